@@ -1,0 +1,181 @@
+#pragma once
+#include <array>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/image/image.h"
+#include "engine/math/types.h"
+
+namespace etalon {
+
+/// Index into one of Scene's vectors; kNone where there is nothing.
+using Index = std::uint32_t;
+inline constexpr Index kNone = 0xffffffffu;
+
+enum class Topology { points, lines, triangles };
+
+/// One draw's geometry in mesh space, metres. Strips, fans and loops have been unrolled into `indices`.
+/// Every attribute is empty or has one entry per position, all finite.
+struct Primitive {
+    Topology topology = Topology::triangles;
+    std::vector<vec3> positions;
+    std::vector<vec3> normals;          ///< unit; computed flat when the file has none (then has_normals is false)
+    std::vector<vec4> tangents;         ///< xyz unit, w = ±1 the bitangent's sign; filled where a normal map needs them
+    std::array<std::vector<vec2>, 2> uv;///< TEXCOORD_0, TEXCOORD_1; v = 0 is the top row of the texture
+    std::vector<vec4> colors;           ///< COLOR_0, linear; multiplies base colour and alpha
+    std::vector<std::uint32_t> indices; ///< 1, 2 or 3 an element; every value < positions.size()
+    Index material = 0;                 ///< always a valid index: a default material is appended where needed
+    bool has_normals = false;           ///< the file gave normals; else they are the geometric ones of flat faces
+};
+
+struct Mesh {
+    std::string name;
+    std::vector<Primitive> primitives;
+};
+
+enum class Wrap { repeat, mirrored_repeat, clamp_to_edge };
+enum class Filter { nearest, linear };
+
+/// glTF sampler. Without mipmaps level 0 alone is used.
+struct Sampler {
+    Wrap wrap_u = Wrap::repeat;
+    Wrap wrap_v = Wrap::repeat;
+    Filter mag = Filter::linear;
+    Filter min = Filter::linear;
+    Filter mip = Filter::linear;
+    bool mipmapped = true;
+};
+
+/// Texels as the file coded them, and how they are to be read.
+struct Texture {
+    std::string name;
+    Index image = kNone;  ///< into Scene::images
+    Sampler sampler;
+};
+
+/// A texture as a material uses it. uv' = transform * (u, v, 1) (KHR_texture_transform; identity otherwise).
+struct TextureUse {
+    Index texture = kNone;
+    int uv_set = 0;
+    dmat3 transform{1};
+    bool present() const { return texture != kNone; }
+};
+
+/// Which BSDF: glTF's metallic-roughness model, or one of extras.etalon.bsdf. docs/shading.md §2.
+enum class BsdfModel { metallic_roughness, unlit, lambert, mirror, rough_conductor, dielectric, rough_dielectric };
+enum class AlphaMode { opaque, mask, blend };
+
+struct Material {
+    std::string name;
+    BsdfModel model = BsdfModel::metallic_roughness;
+    dvec4 base_color{1};  ///< linear factor and alpha; the reflectance of lambert and mirror
+    double metallic = 1;
+    double roughness = 1;           ///< perceptual
+    dvec3 emission{0};              ///< radiance, nit: factor × KHR_materials_emissive_strength
+    dvec3 eta{1.5};                 ///< rough_conductor: per channel; dielectrics: ior in x
+    dvec3 k{0};                     ///< rough_conductor: extinction per channel
+    double ggx_alpha = 0;           ///< rough_conductor, rough_dielectric
+    double normal_scale = 1;
+    double occlusion_strength = 1;
+    AlphaMode alpha_mode = AlphaMode::opaque;
+    double alpha_cutoff = 0.5;
+    bool double_sided = false;
+    bool emits_front_only = false;  ///< extras.etalon.emission "front": also where double_sided
+    TextureUse base_color_texture;          ///< sRGB colour, linear alpha
+    TextureUse metallic_roughness_texture;  ///< linear; G roughness, B metallic
+    TextureUse normal_texture;              ///< linear, tangent space
+    TextureUse occlusion_texture;           ///< linear, R
+    TextureUse emissive_texture;            ///< sRGB
+};
+
+enum class LightType { point, spot, directional };
+
+/// KHR_lights_punctual. Radiometric or photometric alike: the film's unit follows (docs/equations.md).
+struct Light {
+    std::string name;
+    LightType type = LightType::point;
+    dvec3 color{1};
+    double intensity = 1;         ///< candela (point, spot), lux (directional)
+    double range = 0;             ///< metres; 0: unlimited
+    double inner_cone = 0;        ///< radians
+    double outer_cone = kPi / 4;  ///< radians
+};
+
+struct ThinLens {
+    double aperture_radius = 0;  ///< metres
+    double focus_distance = 1;   ///< metres along the axis
+};
+
+struct Camera {
+    std::string name;
+    bool orthographic = false;
+    double yfov = kPi / 4;                ///< full vertical angle, radians
+    std::optional<double> aspect;         ///< of the file; the picture's own aspect is used for rendering
+    double xmag = 1, ymag = 1;            ///< half extents of an orthographic view, metres
+    double znear = 0.01;                  ///< metres; used by rasterizers alone
+    std::optional<ThinLens> lens;
+};
+
+/// extras.etalon shape of a node: an exact sphere about the node's origin.
+struct SphereShape {
+    double radius = 1;
+    Index material = 0;
+};
+
+struct Node {
+    std::string name;
+    dmat4 parent_from_node{1};
+    std::vector<Index> children;
+    Index mesh = kNone;
+    Index camera = kNone;
+    Index light = kNone;
+    std::optional<SphereShape> sphere;
+    std::vector<dmat4> instances;  ///< EXT_mesh_gpu_instancing, node from instance; empty: one, the identity
+    bool visible = true;           ///< KHR_node_visibility; false hides the whole subtree
+};
+
+/// Light from infinitely far. For world direction d: d' = R_y(-rotation) d, u = fract(atan2(d'.x, -d'.z) / 2π),
+/// v = acos(d'.y) / π, value = scale × (map ? bilinear(map, u wraps, v clamps) : radiance). docs/shading.md §5.
+struct Environment {
+    dvec3 radiance{0};      ///< nit, where there is no map
+    std::shared_ptr<const Image> map;  ///< equirectangular linear radiance, 3 channels; null: constant
+    double rotation = 0;    ///< radians about +Y
+    double scale = 1;
+    bool is_black() const { return map ? scale == 0 : radiance == dvec3(0) || scale == 0; }
+};
+
+/// extras.etalon of a glTF scene: what its author fixed about the picture.
+struct FilmHints {
+    std::optional<ivec2> size;
+    std::optional<int> max_depth;
+};
+
+struct SceneRoot {
+    std::string name;
+    std::vector<Index> nodes;
+    std::optional<Environment> environment;  ///< nothing: the file says none
+    FilmHints hints;
+};
+
+/// A glTF asset as a plain value; knows neither devices nor files nor time.
+struct Scene {
+    std::string name;              ///< file name without folder, or "builtin:…"
+    std::vector<Mesh> meshes;
+    std::vector<Material> materials;
+    std::vector<Texture> textures;
+    std::vector<Texels> images;
+    std::vector<Camera> cameras;
+    std::vector<Light> lights;
+    std::vector<Node> nodes;       ///< a forest: every child has one parent, no cycle
+    std::vector<SceneRoot> roots;  ///< glTF's scenes; at least one
+    Index default_root = 0;
+    std::vector<std::string> warnings;    ///< what was ignored or mended, one line each, with its JSON pointer
+    std::vector<std::string> variants;    ///< names of KHR_materials_variants, listed only
+    std::vector<std::string> animations;  ///< names, listed only
+};
+
+}  // namespace etalon
