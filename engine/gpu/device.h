@@ -1,0 +1,135 @@
+#pragma once
+#include <vulkan/vulkan_core.h>
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace etalon::gpu {
+
+struct DeviceState;
+
+enum class DeviceKind { cpu, gpu };  ///< cpu: software (lavapipe); gpu: everything else
+std::string_view name(DeviceKind kind);
+
+/// One Vulkan device of this machine, and why it is not the one in use.
+struct DeviceReport {
+    unsigned index = 0;  ///< in the loader's order; what DeviceOptions::device accepts
+    std::string name;
+    DeviceKind kind = DeviceKind::gpu;
+    std::string type;          ///< "discrete", "integrated", "virtual", "cpu", "other"
+    std::string driver;        ///< driver name and version info: "llvmpipe, Mesa 22.3.6 (LLVM 15.0.6)"
+    std::string api_version;   ///< Vulkan version it offers: "1.3.230"
+    std::uint64_t memory = 0;  ///< bytes of its largest device-local heap
+    bool chosen = false;
+    std::vector<std::string> reasons;  ///< every reason why it was not chosen; empty for the chosen one
+};
+
+struct DeviceOptions {
+    std::string device;  ///< an index, or a part of the name (case ignored); empty: GPUs first, then the CPU
+    std::optional<DeviceKind> kind;  ///< only this kind will do
+    bool validate = false;           ///< core and synchronization validation; see Device::validation_messages
+    std::optional<std::uint64_t> memory_budget;  ///< bytes; see Device::memory_budget
+    /// To present: what the window system needs of the instance, and how it makes a surface. The Device owns the
+    /// surface and is chosen so that it can present to it.
+    std::vector<std::string> instance_extensions;
+    std::function<VkSurfaceKHR(VkInstance)> make_surface;
+};
+
+/// What the device allows and has, as far as this project asks.
+struct DeviceLimits {
+    std::uint64_t storage_buffer_range = 0;   ///< bytes visible through one storage buffer binding
+    std::uint64_t uniform_buffer_range = 0;   ///< bytes
+    std::uint64_t texel_buffer_elements = 0;  ///< texels of one texel buffer view
+    std::uint64_t buffer_size = 0;            ///< bytes of one buffer
+    std::uint32_t image_side = 0;             ///< texels of a 2D image
+    std::uint32_t image_layers = 0;
+    std::uint32_t push_constants = 0;  ///< bytes
+    std::uint32_t sampled_images_per_stage = 0;
+    std::uint32_t storage_buffers_per_stage = 0;
+    std::uint32_t storage_images_per_stage = 0;  ///< storage texel buffers count as these
+    std::uint32_t workgroup_count[3] = {};
+    std::uint32_t workgroup_size[3] = {};
+    std::uint32_t workgroup_invocations = 0;
+    std::uint32_t workgroup_memory = 0;  ///< bytes of shared memory
+    std::uint32_t subgroup_size = 0;
+    std::uint32_t samples = 0;        ///< bit n: 2^n samples a pixel, in float colour and depth alike
+    std::uint32_t subpixel_bits = 0;  ///< of rasterization coordinates
+    std::uint32_t subtexel_bits = 0;  ///< of linear filtering
+    std::uint32_t mip_bits = 0;       ///< of the fraction between mip levels
+    float anisotropy = 1;             ///< 1: none
+    double timestamp_ns = 0;          ///< nanoseconds per tick; 0: the queue has no timestamps
+    bool float64 = false;
+    bool int64 = false;
+    bool wide_lines = false;
+    bool wireframe = false;
+};
+
+/// Identifies a submission; submissions finish in order.
+using Ticket = std::uint64_t;
+
+/// Bytes of device memory: what is held of the driver, and what may be.
+struct MemoryUse {
+    std::uint64_t held = 0;    ///< in arenas
+    std::uint64_t in_use = 0;  ///< by buffers and images
+    std::uint64_t budget = 0;
+};
+
+/// Every Vulkan device, with the reasons for and against each under `options`. Never throws for lack of a device: the
+/// list is empty then, or all its entries have reasons. Throws Error(machine) when there is no Vulkan loader.
+std::vector<DeviceReport> list_devices(const DeviceOptions& options = {});
+
+/// A logical Vulkan 1.3 device with one graphics and compute queue, on which everything in engine/gpu is made and which
+/// must outlive it all. Required of a device: dynamic rendering, synchronization2, timeline semaphores, buffer device
+/// address, scalar block layout. Creation throws Error(machine) with every device's reasons when none will do.
+/// Movable; submit and memory calls may come from several threads.
+class Device {
+ public:
+    explicit Device(const DeviceOptions& options = {});
+    Device(Device&&) noexcept;
+    Device& operator=(Device&&) noexcept;
+    ~Device();
+
+    const DeviceReport& report() const;                   ///< of the device in use
+    const std::vector<DeviceReport>& candidates() const;  ///< of all
+    const DeviceLimits& limits() const;
+    DeviceKind kind() const { return report().kind; }
+    const std::string& name() const { return report().name; }
+    /// What it was made by, for metadata: "llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe Mesa 22.3.6, Vulkan 1.3.230".
+    std::string description() const;
+
+    /// Most bytes that may be allocated; more throws Error(machine) with what was needed and what there is. By default
+    /// 75% of the machine's memory on CPU devices and 75% of the largest device-local heap on others.
+    std::uint64_t memory_budget() const { return memory().budget; }
+    MemoryUse memory() const;
+    /// True where device memory is the host's: buffers of MemoryKind::device are mapped and need no staging.
+    bool unified_memory() const;
+
+    /// Blocks until the submission has finished. Throws Error(machine) when the time is over or the device is lost.
+    void wait(Ticket ticket, std::chrono::milliseconds timeout = std::chrono::minutes(2)) const;
+    bool finished(Ticket ticket) const;
+    void wait_idle() const;
+
+    bool validating() const;
+    /// What the validation layers have said since creation (errors and warnings); empty when not validating.
+    std::vector<std::string> validation_messages() const;
+
+    VkInstance instance() const;
+    VkSurfaceKHR surface() const;  ///< null unless options.make_surface was given
+    /// For the other files of engine/gpu.
+    DeviceState& state() const { return *state_; }
+
+ private:
+    std::unique_ptr<DeviceState> state_;
+};
+
+/// Versions of what stands between us and the device, for `info`: loader, layers and drivers ("name version" each).
+std::vector<std::string> vulkan_versions();
+
+}  // namespace etalon::gpu
