@@ -1,0 +1,209 @@
+#include "engine/scene/pose.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+
+#include "engine/base/error.h"
+#include "engine/scene/builder.h"
+#include "engine/scene/environment.h"
+#include "engine/scene/view.h"
+
+namespace etalon {
+
+namespace {
+
+// Draws after instancing. What a flattened list may cost: 10^7 · 144 bytes.
+constexpr std::size_t kMaxDraws = 10'000'000;
+// Up to here bounds come from every vertex, beyond from the boxes of the primitives.
+constexpr std::size_t kExactVertices = std::size_t{1} << 24;
+
+std::string node_label(const Scene& scene, Index index)
+{
+    return fmt::format("/nodes/{}{}", index,
+                       scene.nodes[index].name.empty() ? "" : " \"" + scene.nodes[index].name + "\"");
+}
+
+// The walk over the forest below one root. Depth-first in node order, without recursion: files may be 10^6 deep.
+class Walk {
+ public:
+    Walk(const Scene& scene, const SceneRoot& root, PosedScene& out)
+        : scene_(scene), out_(out), seen_(scene.nodes.size())
+    {
+        for (auto it = root.nodes.rbegin(); it != root.nodes.rend(); ++it) stack_.push_back({*it, true, dmat4(1)});
+        while (!stack_.empty()) {
+            const Pending next = stack_.back();
+            stack_.pop_back();
+            visit(next.node, next.visible, next.world_from_parent);
+        }
+    }
+
+    std::vector<PlacedCamera> cameras;
+
+ private:
+    struct Pending {
+        Index node;
+        bool visible;
+        dmat4 world_from_parent;
+    };
+
+    void visit(Index index, bool parent_visible, const dmat4& world_from_parent)
+    {
+        assume(index < scene_.nodes.size());
+        if (seen_[index])
+            throw Error(Blame::input,
+                        node_label(scene_, index) + " is reached twice: it has two parents or is its own ancestor");
+        seen_[index] = true;
+        const Node& node = scene_.nodes[index];
+        const dmat4 world = world_from_parent * node.parent_from_node;
+        for (int column = 0; column < 4; ++column)
+            if (!is_finite(dvec3(world[column])))
+                throw Error(Blame::input, node_label(scene_, index) + ": the world matrix is not finite",
+                            "repair the scales and translations above this node");
+        // A camera stays usable in a hidden subtree: visibility is about what is drawn.
+        if (node.camera != kNone) cameras.push_back({node.camera, index, world});
+        const bool visible = parent_visible && node.visible;
+        if (visible && node.mesh != kNone) add_draws(node, index, world);
+        if (visible && node.sphere) add_sphere(node, index, world);
+        if (visible && node.light != kNone) add_light(node, index, world);
+        for (auto it = node.children.rbegin(); it != node.children.rend(); ++it)
+            stack_.push_back({*it, visible, world});
+    }
+
+    void add_draws(const Node& node, Index index, const dmat4& world)
+    {
+        assume(node.mesh < scene_.meshes.size());
+        const auto& primitives = scene_.meshes[node.mesh].primitives;
+        const std::size_t copies = std::max<std::size_t>(node.instances.size(), 1);
+        if (primitives.size() * copies > kMaxDraws - std::min(out_.draws.size(), kMaxDraws))
+            throw Error(Blame::input,
+                        fmt::format("{} asks for {} draws; the limit is {}", node_label(scene_, index),
+                                    primitives.size() * copies, kMaxDraws),
+                        "use fewer instances");
+        for (std::size_t copy = 0; copy < copies; ++copy) {
+            const dmat4 placed = node.instances.empty() ? world : world * node.instances[copy];
+            for (std::size_t p = 0; p < primitives.size(); ++p)
+                if (!primitives[p].indices.empty())
+                    out_.draws.push_back({node.mesh, static_cast<Index>(p), index, placed});
+        }
+    }
+
+    void add_sphere(const Node& node, Index index, const dmat4& world)
+    {
+        const dmat3 linear(world);
+        const double scale = std::cbrt(std::abs(glm::determinant(linear)));
+        const double spread = std::max({length(linear[0]), length(linear[1]), length(linear[2])}) -
+                              std::min({length(linear[0]), length(linear[1]), length(linear[2])});
+        if (spread > 1e-6 * scale)
+            out_.notes.push_back(node_label(scene_, index) +
+                                 ": a sphere under uneven scale is drawn round, of the same volume");
+        const double radius = node.sphere->radius * scale;
+        if (radius > 0) out_.spheres.push_back({dvec3(world[3]), radius, node.sphere->material, index});
+    }
+
+    void add_light(const Node& node, Index index, const dmat4& world)
+    {
+        assume(node.light < scene_.lights.size());
+        dvec3 direction = -normalize(dvec3(world[2]));
+        if (!is_finite(direction)) {
+            direction = dvec3(0, 0, -1);
+            out_.notes.push_back(node_label(scene_, index) +
+                                 ": a light whose node has no extent in z shines towards -Z");
+        }
+        out_.lights.push_back({scene_.lights[node.light], dvec3(world[3]), direction});
+    }
+
+    const Scene& scene_;
+    PosedScene& out_;
+    std::vector<bool> seen_;
+    std::vector<Pending> stack_;
+};
+
+// Does this surface light the others? A texture of glowing parts at ordinary strength is decoration: without a lamp in
+// the file such models (DamagedHelmet) are meant to be lit from outside.
+bool shines(const Material& material)
+{
+    const double strongest = std::max({material.emission.x, material.emission.y, material.emission.z});
+    return strongest > (material.emissive_texture.present() ? 1 : 0);
+}
+
+bool has_light(const PosedScene& posed)
+{
+    const auto& materials = posed.scene->materials;
+    return !posed.lights.empty() || std::any_of(posed.draws.begin(), posed.draws.end(), [&](const Draw& d) {
+        return shines(posed.material(d));
+    }) || std::any_of(posed.spheres.begin(), posed.spheres.end(), [&](const PosedSphere& s) {
+        return shines(materials[s.material]);
+    });
+}
+
+// Calls `with(point, radius)` for points whose box and sphere contain the scene's.
+template <typename Function>
+void for_each_extreme(const PosedScene& posed, Function with)
+{
+    std::size_t vertices = 0;
+    for (const Draw& draw : posed.draws) vertices += posed.primitive(draw).indices.size();
+    std::map<const Primitive*, std::pair<vec3, vec3>> boxes;
+    for (const Draw& draw : posed.draws) {
+        const Primitive& primitive = posed.primitive(draw);
+        const auto world = [&](const dvec3& p) { return dvec3(draw.world_from_object * dvec4(p, 1)); };
+        if (vertices <= kExactVertices) {
+            for (const std::uint32_t i : primitive.indices) with(world(dvec3(primitive.positions[i])), 0.0);
+        } else {
+            const auto [box, is_new] = boxes.try_emplace(&primitive);
+            if (is_new) box->second = bounds(primitive);
+            const auto& [low, high] = box->second;
+            for (int corner = 0; corner < 8; ++corner)
+                with(
+                    world(dvec3(corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y, corner & 4 ? high.z : low.z)),
+                    0.0);
+        }
+    }
+    for (const PosedSphere& sphere : posed.spheres) with(sphere.center, sphere.radius);
+}
+
+Subject measure_bounds(PosedScene& posed)
+{
+    dvec3 low(std::numeric_limits<double>::infinity());
+    dvec3 high = -low;
+    for_each_extreme(posed, [&](const dvec3& p, double radius) {
+        low = glm::min(low, p - radius);
+        high = glm::max(high, p + radius);
+    });
+    if (!(low.x <= high.x)) return {};
+    if (!is_finite(low) || !is_finite(high))
+        throw Error(Blame::input, "the scene reaches beyond every number", "repair its scales and translations");
+    posed.bounds_min = low;
+    posed.bounds_max = high;
+    Subject subject{.center = low + (high - low) / 2.0, .radius = 0};
+    for_each_extreme(posed, [&](const dvec3& p, double radius) {
+        subject.radius = std::max(subject.radius, length(p - subject.center) + radius);
+    });
+    if (!(subject.radius > 0) || !std::isfinite(subject.radius)) subject.radius = 1;
+    return subject;
+}
+
+}  // namespace
+
+PosedScene pose(const Scene& scene, const PoseSettings& settings)
+{
+    assume(!scene.roots.empty());
+    const Index chosen = settings.root.value_or(scene.default_root);
+    if (chosen >= scene.roots.size())
+        throw Error(Blame::input, fmt::format("no scene {} in {}", chosen, scene.name),
+                    fmt::format("it has {}: 0 to {}", scene.roots.size(), scene.roots.size() - 1));
+    const SceneRoot& root = scene.roots[chosen];
+
+    PosedScene posed;
+    posed.scene = &scene;
+    const ivec2 size = picture_size(settings, root.hints);
+    const Walk walk(scene, root, posed);
+    const Subject subject = measure_bounds(posed);
+    posed.view = choose_view(scene, walk.cameras, subject, size, settings, posed.notes);
+    posed.environment = resolve_environment(root, settings, has_light(posed), posed.notes);
+    return posed;
+}
+
+}  // namespace etalon
