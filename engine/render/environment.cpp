@@ -1,0 +1,232 @@
+#include "engine/render/environment.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/base/error.h"
+#include "engine/base/parallel.h"
+
+namespace etalon {
+namespace {
+
+constexpr int kSourceWidth = 128;  // of the map that is integrated (SH-33, SH-35)
+constexpr int kSourceHeight = 64;
+constexpr int kMirrorWidth = 512;  // most of table 0
+constexpr int kMirrorHeight = 256;
+
+/// The texels that one texel of a resampled axis covers, with the covered share of each.
+struct Coverage {
+    int first = 0;
+    std::vector<double> weights;  // sum 1
+};
+
+std::vector<Coverage> coverages(int from, int to)
+{
+    std::vector<Coverage> all(static_cast<std::size_t>(to));
+    for (int i = 0; i < to; ++i) {
+        // Integers in units of 1/to of a source texel: exact, so that a whole factor gives equal weights.
+        const std::int64_t begin = std::int64_t{i} * from;
+        const std::int64_t end = begin + from;
+        Coverage& coverage = all[static_cast<std::size_t>(i)];
+        coverage.first = static_cast<int>(begin / to);
+        for (std::int64_t j = coverage.first; j * to < end; ++j) {
+            const std::int64_t covered = std::min(end, (j + 1) * to) - std::max(begin, j * to);
+            coverage.weights.push_back(static_cast<double>(covered) / from);
+        }
+    }
+    return all;
+}
+
+/// A row of a map by colour planes, in double.
+struct Planes {
+    std::vector<double> r, g, b;
+    explicit Planes(int width)
+        : r(static_cast<std::size_t>(width)), g(static_cast<std::size_t>(width)), b(static_cast<std::size_t>(width))
+    {}
+};
+
+std::vector<Planes> rows_of(const Image& map)
+{
+    std::vector<Planes> rows(static_cast<std::size_t>(map.height), Planes(map.width));
+    for (int y = 0; y < map.height; ++y) {
+        Planes& row = rows[static_cast<std::size_t>(y)];
+        for (int x = 0; x < map.width; ++x) {
+            const auto i = static_cast<std::size_t>(x);
+            row.r[i] = map.at(x, y, 0);
+            row.g[i] = map.at(x, y, 1);
+            row.b[i] = map.at(x, y, 2);
+        }
+    }
+    return rows;
+}
+
+double polar_angle(int row, int height)
+{
+    return kPi * (row + 0.5) / height;
+}
+
+/// Solid angle of each texel of a row, sr: exact, not sin θ Δθ Δφ.
+double texel_solid_angle(int row, int width, int height)
+{
+    return 2 * kPi / width * (std::cos(kPi * row / height) - std::cos(kPi * (row + 1) / height));
+}
+
+/// The direction of a texel's centre in the map's frame (SH-40).
+dvec3 texel_direction(int column, int row, int width, int height)
+{
+    const double azimuth = 2 * kPi * (column + 0.5) / width;
+    const double polar = polar_angle(row, height);
+    return {std::sin(polar) * std::sin(azimuth), std::cos(polar), -std::sin(polar) * std::cos(azimuth)};
+}
+
+std::array<double, 9> quadratic_basis(const dvec3& d)
+{
+    return {1, d.y, d.z, d.x, d.x * d.y, d.y * d.z, 3 * d.z * d.z - 1, d.x * d.z, d.x * d.x - d.y * d.y};
+}
+
+IrradianceSh irradiance_of(const Image& source)
+{
+    IrradianceSh sums{};
+    for (int y = 0; y < source.height; ++y) {
+        const double solid_angle = texel_solid_angle(y, source.width, source.height);
+        for (int x = 0; x < source.width; ++x) {
+            const auto basis = quadratic_basis(texel_direction(x, y, source.width, source.height));
+            const dvec3 light = solid_angle * dvec3(source.at(x, y, 0), source.at(x, y, 1), source.at(x, y, 2));
+            for (std::size_t i = 0; i < 9; ++i) sums[i] += basis[i] * light;
+        }
+    }
+    // A_l times the square of each real spherical harmonic's normalization; A = π, 2π/3, π/4.
+    constexpr double kConstant = kPi / (4 * kPi);
+    constexpr double kLinear = 2 * kPi / 3 * 3 / (4 * kPi);
+    constexpr double kProduct = kPi / 4 * 15 / (4 * kPi);
+    constexpr double kAxis = kPi / 4 * 5 / (16 * kPi);
+    constexpr double kDifference = kPi / 4 * 15 / (16 * kPi);
+    constexpr std::array<double, 9> kScale{kConstant, kLinear, kLinear,  kLinear,    kProduct,
+                                           kProduct,  kAxis,   kProduct, kDifference};
+    for (std::size_t i = 0; i < 9; ++i) sums[i] *= kScale[i];
+    return sums;
+}
+
+/// D(N·h)(N·l)₊ up to its constant factor, for view and normal along N: a function of N·l alone, since (N·h)² = (1 +
+/// N·l)/2.
+double lobe(double n_l, double alpha)
+{
+    if (n_l <= 0) return 0;
+    const double cos2 = (1 + n_l) / 2;
+    const double sin2 = (1 - n_l) / 2;
+    const double k = alpha / (sin2 + cos2 * alpha * alpha);  // (SH-11)
+    return k * k * n_l;
+}
+
+/// One row of table `roughness` (SH-35). The weight of a source texel depends on the two rows and on the distance in
+/// azimuth alone, so that each row of weights serves every column.
+void prefilter_row(const std::vector<Planes>& source, double roughness, int row, std::span<dvec3> out)
+{
+    const int columns = static_cast<int>(out.size());
+    const double alpha = roughness * roughness;
+    const double polar = polar_angle(row, EnvironmentTables::kTableHeight);
+    std::vector<double> weights(kSourceWidth * 2);
+    double total = 0;
+    for (int y = 0; y < kSourceHeight; ++y) {
+        const double source_polar = polar_angle(y, kSourceHeight);
+        const double solid_angle = texel_solid_angle(y, kSourceWidth, kSourceHeight);
+        // Column i of the table is centred on the edge between source columns 2i and 2i + 1.
+        for (int x = 0; x < kSourceWidth; ++x) {
+            const double azimuth = 2 * kPi * (x + 0.5) / kSourceWidth;
+            const double n_l =
+                std::sin(polar) * std::sin(source_polar) * std::cos(azimuth) + std::cos(polar) * std::cos(source_polar);
+            const double weight = lobe(n_l, alpha) * solid_angle;
+            total += weight;
+            weights[static_cast<std::size_t>(x)] = weights[static_cast<std::size_t>(x + kSourceWidth)] = weight;
+        }
+        const Planes& planes = source[static_cast<std::size_t>(y)];
+        for (int i = 0; i < columns; ++i) {
+            const int edge = 2 * i + 1;
+            const double* w = weights.data() + (kSourceWidth - edge);
+            double r = 0, g = 0, b = 0;
+            for (std::size_t j = 0; j < kSourceWidth; ++j) {
+                r += w[j] * planes.r[j];
+                g += w[j] * planes.g[j];
+                b += w[j] * planes.b[j];
+            }
+            out[static_cast<std::size_t>(i)] += dvec3(r, g, b);
+        }
+    }
+    for (dvec3& value : out) value /= total;
+}
+
+void put(Image& atlas, int x, int y, const dvec3& value)
+{
+    for (int c = 0; c < 3; ++c) atlas.at(x, y, c) = static_cast<float>(value[c]);
+    atlas.at(x, y, 3) = 1;
+}
+
+}  // namespace
+
+Image area_average(const Image& map, int width, int height, unsigned threads)
+{
+    assume(map.width > 0 && map.height > 0 && map.channels >= 3 && width > 0 && height > 0);
+    const std::vector<Coverage> columns = coverages(map.width, width);
+    const std::vector<Coverage> rows = coverages(map.height, height);
+    Image out(width, height, map.channels);
+    parallel_for(
+        static_cast<std::size_t>(height),
+        [&](std::size_t y) {
+            const Coverage& row = rows[y];
+            std::vector<double> sums(static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.channels));
+            for (std::size_t k = 0; k < row.weights.size(); ++k) {
+                const float* source = map.values.data() + (static_cast<std::size_t>(row.first) + k) * sums.size();
+                for (std::size_t i = 0; i < sums.size(); ++i)
+                    sums[i] += row.weights[k] * static_cast<double>(source[i]);
+            }
+            for (int x = 0; x < width; ++x) {
+                const Coverage& column = columns[static_cast<std::size_t>(x)];
+                for (int c = 0; c < map.channels; ++c) {
+                    double sum = 0;
+                    for (std::size_t k = 0; k < column.weights.size(); ++k) {
+                        const std::size_t texel = static_cast<std::size_t>(column.first) + k;
+                        sum += column.weights[k] *
+                               sums[texel * static_cast<std::size_t>(map.channels) + static_cast<std::size_t>(c)];
+                    }
+                    out.at(x, static_cast<int>(y), c) = static_cast<float>(sum);
+                }
+            }
+        },
+        threads);
+    return out;
+}
+
+EnvironmentTables tabulate(const Image& map, unsigned threads)
+{
+    using Tables = EnvironmentTables;
+    const Image source = area_average(map, kSourceWidth, kSourceHeight, threads);
+    const Image mirror =
+        area_average(map, std::min(map.width, kMirrorWidth), std::min(map.height, kMirrorHeight), threads);
+    Tables tables{.irradiance = irradiance_of(source),
+                  .atlas = Image(std::max(mirror.width, Tables::kTableWidth),
+                                 mirror.height + Tables::kRoughTables * Tables::kTableHeight, 4),
+                  .mirror_width = mirror.width,
+                  .mirror_height = mirror.height};
+    for (int y = 0; y < mirror.height; ++y)
+        for (int x = 0; x < mirror.width; ++x)
+            put(tables.atlas, x, y, {mirror.at(x, y, 0), mirror.at(x, y, 1), mirror.at(x, y, 2)});
+
+    const std::vector<Planes> rows = rows_of(source);
+    parallel_for(
+        Tables::kRoughTables * Tables::kTableHeight,
+        [&](std::size_t i) {
+            const int row = static_cast<int>(i) % Tables::kTableHeight;
+            const int table = static_cast<int>(i) / Tables::kTableHeight + 1;
+            std::vector<dvec3> values(Tables::kTableWidth, dvec3(0));
+            prefilter_row(rows, table / double(Tables::kRoughTables), row, values);
+            for (int x = 0; x < Tables::kTableWidth; ++x)
+                put(tables.atlas, x, mirror.height + static_cast<int>(i), values[static_cast<std::size_t>(x)]);
+        },
+        threads);
+    return tables;
+}
+
+}  // namespace etalon

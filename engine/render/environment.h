@@ -1,0 +1,36 @@
+#pragma once
+#include <array>
+
+#include "engine/image/image.h"
+
+namespace etalon {
+
+/// The exact average of `map` over each texel of a width × height map of the same picture: its texels are taken as
+/// constant squares in (u, v), each source row weighted alike (SH-41). Larger sizes repeat texels.
+Image area_average(const Image& map, int width, int height, unsigned threads = 0);
+
+/// Irradiance of a distant environment as a quadratic in the normal, nit·sr (SH-33):
+/// E(n) = c₀ + c₁y + c₂z + c₃x + c₄xy + c₅yz + c₆(3z² − 1) + c₇xz + c₈(x² − y²), which may dip below 0: clamp it.
+/// Ramamoorthi & Hanrahan 2001, with the normalization of the harmonics and A_l folded into the coefficients.
+using IrradianceSh = std::array<dvec3, 9>;
+
+/// What a rasterizer looks up instead of integrating an environment map: (SH-33…35), in the map's own frame, that is
+/// before its rotation and scale, so that turning and dimming it costs nothing.
+struct EnvironmentTables {
+    IrradianceSh irradiance{};
+    /// The six tables P of (SH-35) in one RGBA picture (alpha 1): table 0 at the top left, table k = 1 … 5 in the
+    /// kTableWidth × kTableHeight texels from row mirror_height + (k − 1) kTableHeight.
+    Image atlas;
+    int mirror_width = 0;   ///< of table 0: at most 512
+    int mirror_height = 0;  ///< at most 256
+
+    static constexpr int kTableWidth = 64;
+    static constexpr int kTableHeight = 32;
+    static constexpr int kRoughTables = 5;
+};
+
+/// Of an equirectangular map of linear radiance with 3 or 4 channels (docs/shading.md §5). On up to `threads` threads
+/// (0: one per core), with the same bits whatever their number.
+EnvironmentTables tabulate(const Image& map, unsigned threads = 0);
+
+}  // namespace etalon
