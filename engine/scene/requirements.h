@@ -14,18 +14,42 @@ namespace etalon {
 /// specialization constants, passes, memory) is built from these bits. Neutral: a bit too many changes no pixel.
 /// Necessary: clear a set bit, and the picture changes or the call refuses (tests/agree).
 enum class Feature : unsigned {
-    triangles, lines, points, spheres,
-    normals,                    ///< interpolated vertex normals (else flat: from the face)
-    tangents, uv0, uv1, vertex_colors,
-    base_color_texture, metallic_roughness_texture, normal_texture, occlusion_texture, emissive_texture,
-    texture_transform, mipmaps,
-    alpha_mask, alpha_blend, double_sided,
-    metallic_roughness, unlit, lambert, mirror, rough_conductor, dielectric, rough_dielectric, blinn_phong,
-    emission,                   ///< some visible surface emits
+    triangles,
+    lines,
+    points,
+    spheres,
+    normals,  ///< interpolated vertex normals (else flat: from the face)
+    tangents,
+    uv0,
+    uv1,
+    vertex_colors,
+    base_color_texture,
+    metallic_roughness_texture,
+    normal_texture,
+    occlusion_texture,
+    emissive_texture,
+    texture_transform,
+    mipmaps,
+    alpha_mask,
+    alpha_blend,
+    double_sided,
+    metallic_roughness,
+    unlit,
+    lambert,
+    mirror,
+    rough_conductor,
+    dielectric,
+    rough_dielectric,
+    blinn_phong,
+    emission,  ///< some visible surface emits
     punctual_lights,
-    environment_constant, environment_map,
-    visible_background,         ///< the environment is drawn behind the scene
-    thin_lens, orthographic, msaa, aovs,
+    environment_constant,
+    environment_map,
+    visible_background,  ///< the environment is drawn behind the scene
+    thin_lens,
+    orthographic,
+    msaa,
+    aovs,
     count
 };
 inline constexpr std::size_t kFeatureCount = static_cast<std::size_t>(Feature::count);
@@ -34,9 +58,10 @@ std::string_view name(Feature feature);
 
 struct Requirements {
     std::bitset<kFeatureCount> bits;
-    std::array<std::string, kFeatureCount> cause;  ///< for each set bit, the first object that asked: "material 3 (glass)"
-    std::vector<bool> texture_used;                ///< per Scene::textures
-    std::vector<bool> material_used;               ///< per Scene::materials
+    std::array<std::string, kFeatureCount>
+        cause;                        ///< for each set bit, the first object that asked: "material 3 (glass)"
+    std::vector<bool> texture_used;   ///< per Scene::textures
+    std::vector<bool> material_used;  ///< per Scene::materials
 
     bool has(Feature feature) const { return bits[static_cast<std::size_t>(feature)]; }
     void set(Feature feature, std::string because);

@@ -1,0 +1,227 @@
+#include "engine/scene/requirements.h"
+
+#include <fmt/format.h>
+
+#include "engine/base/error.h"
+
+namespace etalon {
+
+namespace {
+
+constexpr std::array<std::string_view, kFeatureCount> kNames = {"triangles",
+                                                                "lines",
+                                                                "points",
+                                                                "spheres",
+                                                                "normals",
+                                                                "tangents",
+                                                                "uv0",
+                                                                "uv1",
+                                                                "vertex_colors",
+                                                                "base_color_texture",
+                                                                "metallic_roughness_texture",
+                                                                "normal_texture",
+                                                                "occlusion_texture",
+                                                                "emissive_texture",
+                                                                "texture_transform",
+                                                                "mipmaps",
+                                                                "alpha_mask",
+                                                                "alpha_blend",
+                                                                "double_sided",
+                                                                "metallic_roughness",
+                                                                "unlit",
+                                                                "lambert",
+                                                                "mirror",
+                                                                "rough_conductor",
+                                                                "dielectric",
+                                                                "rough_dielectric",
+                                                                "blinn_phong",
+                                                                "emission",
+                                                                "punctual_lights",
+                                                                "environment_constant",
+                                                                "environment_map",
+                                                                "visible_background",
+                                                                "thin_lens",
+                                                                "orthographic",
+                                                                "msaa",
+                                                                "aovs"};
+static_assert(!kNames.back().empty());
+
+Feature feature_of(BsdfModel model)
+{
+    switch (model) {
+        case BsdfModel::metallic_roughness:
+            return Feature::metallic_roughness;
+        case BsdfModel::unlit:
+            return Feature::unlit;
+        case BsdfModel::lambert:
+            return Feature::lambert;
+        case BsdfModel::mirror:
+            return Feature::mirror;
+        case BsdfModel::rough_conductor:
+            return Feature::rough_conductor;
+        case BsdfModel::dielectric:
+            return Feature::dielectric;
+        case BsdfModel::rough_dielectric:
+            return Feature::rough_dielectric;
+    }
+    assume(false);
+    return Feature::count;
+}
+
+// Does this model read the base colour (factor, texture, vertex colour), for its light or for its coverage?
+bool reads_base_color(const Material& material)
+{
+    return material.alpha_mode != AlphaMode::opaque || material.model == BsdfModel::metallic_roughness ||
+           material.model == BsdfModel::unlit || material.model == BsdfModel::lambert ||
+           material.model == BsdfModel::mirror;
+}
+
+std::string label(std::string_view kind, std::size_t index, const std::string& name)
+{
+    return name.empty() ? fmt::format("{} {}", kind, index) : fmt::format("{} {} ({})", kind, index, name);
+}
+
+class Survey {
+ public:
+    Survey(const PosedScene& posed, const RenderSettings& settings)
+        : posed_(posed),
+          scene_(*posed.scene),
+          settings_(settings),
+          rasterizes_(settings.renderer == Renderer::raster || settings.renderer == Renderer::reference_raster),
+          environment_shines_(!posed.environment.is_black())
+    {
+        out_.texture_used.resize(scene_.textures.size());
+        out_.material_used.resize(scene_.materials.size());
+        for (const Draw& draw : posed_.draws) geometry(draw);
+        for (const PosedSphere& sphere : posed_.spheres) {
+            out_.set(Feature::spheres, label("node", sphere.node, scene_.nodes[sphere.node].name));
+            material(sphere.material);
+        }
+        light();
+        view();
+    }
+
+    Requirements result() && { return std::move(out_); }
+
+ private:
+    void geometry(const Draw& draw)
+    {
+        const Primitive& primitive = posed_.primitive(draw);
+        // Lines and points have no area: path tracers do not see them (SH-7).
+        if (!rasterizes_ && primitive.topology != Topology::triangles) return;
+        const std::string who =
+            fmt::format("{} primitive {}", label("mesh", draw.mesh, scene_.meshes[draw.mesh].name), draw.primitive);
+        switch (primitive.topology) {
+            case Topology::points:
+                out_.set(Feature::points, who);
+                break;
+            case Topology::lines:
+                out_.set(Feature::lines, who);
+                break;
+            case Topology::triangles:
+                out_.set(Feature::triangles, who);
+                break;
+        }
+        const Material& surface = scene_.materials[primitive.material];
+        const bool lit = surface.model != BsdfModel::unlit;
+        if (primitive.has_normals && (lit || settings_.aovs)) out_.set(Feature::normals, who);
+        if (!primitive.colors.empty() && reads_base_color(surface)) out_.set(Feature::vertex_colors, who);
+        if (!primitive.tangents.empty() && lit && surface.normal_texture.present()) out_.set(Feature::tangents, who);
+        if (settings_.aovs && !primitive.uv[0].empty()) out_.set(Feature::uv0, who);
+        material(primitive.material);
+    }
+
+    void material(Index index)
+    {
+        if (out_.material_used[index]) return;
+        out_.material_used[index] = true;
+        const Material& m = scene_.materials[index];
+        const std::string who = label("material", index, m.name);
+        const bool lit = m.model != BsdfModel::unlit;
+        out_.set(feature_of(m.model), who);
+        if (lit) any_lit_ = true;
+        if (lit && rasterizes_ && settings_.shading == Shading::blinn_phong)
+            out_.set(Feature::blinn_phong, "settings: blinn-phong shading");
+        if (m.alpha_mode == AlphaMode::mask) out_.set(Feature::alpha_mask, who);
+        if (m.alpha_mode == AlphaMode::blend) out_.set(Feature::alpha_blend, who);
+        if (m.double_sided) out_.set(Feature::double_sided, who);
+        const bool emits = m.emission != dvec3(0);
+        if (emits) out_.set(Feature::emission, who);
+
+        if (reads_base_color(m)) texture(m.base_color_texture, Feature::base_color_texture, who);
+        if (m.model == BsdfModel::metallic_roughness)
+            texture(m.metallic_roughness_texture, Feature::metallic_roughness_texture, who);
+        if (lit) texture(m.normal_texture, Feature::normal_texture, who);
+        // Occlusion dims the environment's light in rasterizers and nothing else (SH-36).
+        if (lit && rasterizes_ && environment_shines_ && m.occlusion_strength != 0)
+            texture(m.occlusion_texture, Feature::occlusion_texture, who);
+        if (emits) texture(m.emissive_texture, Feature::emissive_texture, who);
+    }
+
+    void texture(const TextureUse& use, Feature feature, const std::string& who)
+    {
+        if (!use.present()) return;
+        out_.set(feature, who);
+        out_.set(use.uv_set == 0 ? Feature::uv0 : Feature::uv1, who);
+        if (use.transform != dmat3(1)) out_.set(Feature::texture_transform, who);
+        if (rasterizes_ && settings_.mipmaps && scene_.textures[use.texture].sampler.mipmapped)
+            out_.set(Feature::mipmaps, label("texture", use.texture, scene_.textures[use.texture].name));
+        out_.texture_used[use.texture] = true;
+    }
+
+    void light()
+    {
+        for (std::size_t i = 0; any_lit_ && i < posed_.lights.size(); ++i) {
+            const Light& light = posed_.lights[i].light;
+            if (light.intensity != 0 && light.color != dvec3(0))
+                out_.set(Feature::punctual_lights, label("light", i, light.name));
+        }
+        if (!environment_shines_) return;
+        const bool seen = settings_.background == Background::environment;
+        if (seen) out_.set(Feature::visible_background, "settings: the environment as background");
+        if (seen || any_lit_)
+            out_.set(posed_.environment.map ? Feature::environment_map : Feature::environment_constant, "environment");
+    }
+
+    void view()
+    {
+        const Camera& camera = posed_.view.camera;
+        const std::string who = camera.name.empty() ? "camera" : fmt::format("camera ({})", camera.name);
+        if (camera.orthographic) out_.set(Feature::orthographic, who);
+        if (!rasterizes_ && camera.lens && camera.lens->aperture_radius > 0) out_.set(Feature::thin_lens, who);
+        if (rasterizes_ && settings_.msaa > 1)
+            out_.set(Feature::msaa, fmt::format("settings: msaa {}", settings_.msaa));
+        if (settings_.aovs) out_.set(Feature::aovs, "settings: aovs");
+    }
+
+    const PosedScene& posed_;
+    const Scene& scene_;
+    const RenderSettings& settings_;
+    const bool rasterizes_;
+    const bool environment_shines_;
+    bool any_lit_ = false;
+    Requirements out_;
+};
+
+}  // namespace
+
+std::string_view name(Feature feature)
+{
+    assume(feature < Feature::count);
+    return kNames[static_cast<std::size_t>(feature)];
+}
+
+void Requirements::set(Feature feature, std::string because)
+{
+    const auto i = static_cast<std::size_t>(feature);
+    if (bits[i]) return;
+    bits[i] = true;
+    cause[i] = std::move(because);
+}
+
+Requirements require(const PosedScene& posed, const RenderSettings& settings)
+{
+    return Survey(posed, settings).result();
+}
+
+}  // namespace etalon
