@@ -1,0 +1,32 @@
+// What one pipeline of the rasterizer draws: set from Requirements, material and primitive (engine/render/raster_pipelines.cpp),
+// so that the driver drops the rest.
+#ifndef ETALON_SHADERS_RASTER_FEATURES_GLSL
+#define ETALON_SHADERS_RASTER_FEATURES_GLSL
+
+layout(constant_id = 0) const uint kModel = 0u;             // kModelMetallicRoughness …
+layout(constant_id = 1) const bool kBaseColorTexture = false;
+layout(constant_id = 2) const bool kMetallicRoughnessTexture = false;
+layout(constant_id = 3) const bool kNormalTexture = false;
+layout(constant_id = 4) const bool kOcclusionTexture = false;
+layout(constant_id = 5) const bool kEmissiveTexture = false;
+layout(constant_id = 6) const bool kTextureTransform = false;
+layout(constant_id = 7) const bool kNormals = false;        // vertex normals; else of the face
+layout(constant_id = 8) const bool kUv1 = false;            // some texture reads TEXCOORD_1
+layout(constant_id = 9) const bool kVertexColors = false;
+layout(constant_id = 10) const bool kAlphaMask = false;
+layout(constant_id = 11) const bool kAlphaBlend = false;
+layout(constant_id = 12) const bool kLit = false;           // false: points and lines without normals, and unlit
+layout(constant_id = 13) const bool kPunctualLights = false;
+layout(constant_id = 14) const uint kEnvironment = 0u;      // kEnvironmentNone …
+layout(constant_id = 15) const bool kBlinnPhong = false;
+layout(constant_id = 16) const bool kEmission = false;
+layout(constant_id = 17) const bool kOrthographic = false;
+layout(constant_id = 18) const uint kSamples = 1u;          // of a pixel: 1 or 4
+layout(constant_id = 19) const bool kTriangles = true;      // else points or lines
+layout(constant_id = 20) const bool kCullBack = true;       // spheres; meshes are culled by the pipeline
+
+const uint kEnvironmentNone = 0u;
+const uint kEnvironmentConstant = 1u;
+const uint kEnvironmentMap = 2u;
+
+#endif

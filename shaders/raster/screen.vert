@@ -1,0 +1,7 @@
+#version 460
+// One triangle that covers the whole target, infinitely far in reversed depth.
+void main()
+{
+    const vec2 corner = vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1);
+    gl_Position = vec4(4.0 * corner - 1.0, 0.0, 1.0);
+}

@@ -1,0 +1,46 @@
+// What a frame and a draw of the rasterizer tell its shaders, one definition for C++ and GLSL (scalar layout).
+// Positions are camera-relative world space, metres (TF-2).
+#ifndef ETALON_SHADERS_SHARED_RASTER_H
+#define ETALON_SHADERS_SHARED_RASTER_H
+#include "shaders/shared/types.h"
+ETALON_SHARED_BEGIN
+
+struct RasterFrame {
+    mat4 clip_from_world;
+    mat3 world_from_camera;       // rotation alone
+    vec3 irradiance[9];           // E(n) of (SH-33) in the map's frame, scaled; coefficients as engine/render/environment.h
+    vec3 environment_radiance;    // of a constant environment, scaled
+    vec3 background;              // of Background::colour, nit
+    vec2 environment_turn;        // cos, sin of the environment's rotation about +Y
+    float environment_scale;
+    vec2 film_half;               // half extents of the view at unit distance (perspective) or in metres (orthographic)
+    vec2 size;                    // of the picture, pixels
+    vec2 depth_range;             // near, and far of an orthographic view, metres
+    uvec2 mirror_size;            // of table 0 in the environment's atlas, texels
+    uint light_count;
+};
+
+/// One draw of a mesh: push constants.
+struct RasterDraw {
+    vec4 object_rows[3];  // rows of camera-relative world from object
+    mat3 normal_matrix;   // sign(det M) cofactor(M) (SH-2)
+    uint material;        // index of its MaterialRecord
+    uint object_id;       // AOV
+    uint first_face;      // of this primitive among the face normals
+};
+
+/// One exact sphere: push constants.
+struct RasterSphere {
+    vec3 center;
+    float radius;
+    uint material;
+    uint object_id;
+};
+
+ETALON_SHARED_END
+#ifdef __cplusplus
+static_assert(sizeof(etalon::shared::RasterFrame) == 64 + 36 + 108 + 24 + 8 + 4 + 8 + 8 + 8 + 8 + 4);
+static_assert(sizeof(etalon::shared::RasterDraw) == 48 + 36 + 12);
+static_assert(sizeof(etalon::shared::RasterSphere) == 24);
+#endif
+#endif
