@@ -18,7 +18,8 @@ Film load_film(const std::filesystem::path& path);
 
 /// Compares two files. Where there is neither variance on both sides nor a budget, every value must be equal to within
 /// `settings.rounding` of the larger one, or the verdict is `different`: a diff always has a verdict.
-FileDiff diff_files(const std::filesystem::path& a, const std::filesystem::path& b, const CompareSettings& settings = {});
+FileDiff diff_files(const std::filesystem::path& a, const std::filesystem::path& b,
+                    const CompareSettings& settings = {});
 
 /// The table that a terminal prints, and the same as JSON (schema "etalon-diff/1").
 std::string diff_table(const FileDiff& diff);

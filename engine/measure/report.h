@@ -36,15 +36,15 @@ using NamedValues = std::vector<std::pair<std::string, std::string>>;
 
 /// Everything a run measured: what report.json, report.html and the table say.
 struct Report {
-    std::string scene;           ///< path or builtin name, as the user gave it
-    std::string command;         ///< to make it again
-    NamedValues settings;        ///< "size" "256x256", "spp" "64", "seed" "1" …
-    NamedValues versions;        ///< "etalon", "compiler", "vulkan" …
-    std::vector<StageTime> stages;  ///< before any renderer: load, pose
-    std::vector<std::string> notes; ///< warnings, choices made for the user
+    std::string scene;               ///< path or builtin name, as the user gave it
+    std::string command;             ///< to make it again
+    NamedValues settings;            ///< "size" "256x256", "spp" "64", "seed" "1" …
+    NamedValues versions;            ///< "etalon", "compiler", "vulkan" …
+    std::vector<StageTime> stages;   ///< before any renderer: load, pose
+    std::vector<std::string> notes;  ///< warnings, choices made for the user
     std::vector<RendererRun> runs;
     std::vector<RunComparison> comparisons;
-    DevelopSettings develop;     ///< how the pictures are shown
+    DevelopSettings develop;  ///< how the pictures are shown
     bool interrupted = false;
 };
 
@@ -58,9 +58,9 @@ std::string report_html(const Report& report);
 /// The table that a terminal prints; `width` columns at most, no colour codes, ends with a newline.
 std::string report_table(const Report& report, int width = 100);
 
-/// Writes report.json, report.html, NAME.png and NAME.exr of every run, A-B.png of every comparison (and A-B-z.png where
-/// both have variance) into `folder`, which is made when absent; each file at once or not at all. Returns their paths,
-/// report.html first. Throws Error.
+/// Writes report.json, report.html, NAME.png and NAME.exr of every run, A-B.png of every comparison (and A-B-z.png
+/// where both have variance) into `folder`, which is made when absent; each file at once or not at all. Returns their
+/// paths, report.html first. Throws Error.
 std::vector<std::filesystem::path> write_report(const Report& report, const std::filesystem::path& folder);
 
 }  // namespace etalon

@@ -1,0 +1,164 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "engine/measure/diff.h"
+#include "engine/measure/report.h"
+#include "engine/measure/text.h"
+
+namespace etalon {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// JSON has no NaN and no Inf: null.
+Json number(double value)
+{
+    return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+Json number(const std::optional<double>& value)
+{
+    return value ? number(*value) : Json(nullptr);
+}
+
+Json stages_json(const std::vector<StageTime>& stages)
+{
+    Json out = Json::array();
+    for (const StageTime& stage : stages) out.push_back({{"stage", stage.stage}, {"seconds", number(stage.seconds)}});
+    return out;
+}
+
+Json values_json(const NamedValues& values)
+{
+    Json out = Json::object();
+    for (const auto& [key, value] : values) out[key] = value;
+    return out;
+}
+
+Json error_json(const Film& film)
+{
+    const std::optional<ErrorEstimate> error = estimate_error(film);
+    if (!error) return nullptr;
+    return {{"relative", number(error->relative)}, {"low", number(error->low)}, {"high", number(error->high)}};
+}
+
+Json film_json(const Film& film)
+{
+    const FilmCheck checked = check(film);
+    return {{"width", film.width},
+            {"height", film.height},
+            {"samples", film.samples},
+            {"error_measured", !film.variance.empty()},
+            {"error", error_json(film)},
+            {"nonfinite_samples", film.nonfinite},
+            {"truncated_paths", film.truncated},
+            {"nan_pixels", checked.nan_pixels},
+            {"inf_pixels", checked.inf_pixels},
+            {"single_colour", checked.single_colour}};
+}
+
+Json finding_json(const TileFinding& tile)
+{
+    constexpr const char* kChannels[] = {"red", "green", "blue"};
+    return {{"x", tile.x},
+            {"y", tile.y},
+            {"width", tile.width},
+            {"height", tile.height},
+            {"channel", kChannels[tile.channel]},
+            {"z", number(tile.z)},
+            {"p", number(tile.p)},
+            {"relative", number(tile.relative)}};
+}
+
+Json test_json(const StatisticalTest& test)
+{
+    Json failures = Json::array();
+    for (const TileFinding& tile : test.failures) failures.push_back(finding_json(tile));
+    Json whole = Json::array();
+    for (const TileFinding& channel : test.whole) whole.push_back(finding_json(channel));
+    return {{"false_alarm", number(test.false_alarm)},
+            {"level", number(test.level)},
+            {"tests", test.tests},
+            {"failed", test.failed},
+            {"power", number(test.power)},
+            {"detectable_tile", number(test.detectable_tile)},
+            {"detectable_whole", number(test.detectable_whole)},
+            {"worst_tile", finding_json(test.worst_tile)},
+            {"whole", whole},
+            {"failures", failures},
+            {"pixel_z_std", number(test.pixel_z_std)},
+            {"pixel_z_max", number(test.pixel_z_max)},
+            {"pixel_over_bound", test.pixel_over_bound},
+            {"constant", test.constant},
+            {"constant_unequal", test.constant_unequal},
+            {"uniformity_p", number(test.uniformity_p)},
+            {"tile_p_histogram", test.tile_p_histogram},
+            {"pixel_p_histogram", test.pixel_p_histogram}};
+}
+
+Json comparison_json(const Comparison& comparison)
+{
+    const PictureMetrics& m = comparison.metrics;
+    return {{"verdict", name(comparison.verdict)},
+            {"passed", passed(comparison.verdict)},
+            {"reasons", comparison.reasons},
+            {"metrics",
+             {{"identical", m.identical},
+              {"rmse", number(m.rmse)},
+              {"relmse", number(m.relmse)},
+              {"psnr_db", number(m.psnr)},
+              {"ssim", number(m.ssim)},
+              {"max", number(m.max)},
+              {"mean_relative", number(m.mean_relative)},
+              {"alpha_max", number(m.alpha_max)}}},
+            {"test", comparison.test ? test_json(*comparison.test) : Json(nullptr)}};
+}
+
+/// Names come from files: bytes that are not UTF-8 become U+FFFD instead of an exception.
+std::string dump(const Json& json)
+{
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
+std::string report_json(const Report& report)
+{
+    Json runs = Json::array();
+    for (const RendererRun& run : report.runs)
+        runs.push_back({{"name", run.name},
+                        {"label", run.label},
+                        {"device", run.device},
+                        {"film", film_json(run.film)},
+                        {"stages", stages_json(run.stages)}});
+    Json comparisons = Json::array();
+    for (const RunComparison& pair : report.comparisons) {
+        Json row{{"a", report.runs[pair.a].name}, {"b", report.runs[pair.b].name}};
+        row.update(comparison_json(pair.comparison));
+        comparisons.push_back(std::move(row));
+    }
+    const Json out{{"schema", "etalon-report/1"},
+                   {"scene", report.scene},
+                   {"command", report.command},
+                   {"passed", passed(report)},
+                   {"interrupted", report.interrupted},
+                   {"settings", values_json(report.settings)},
+                   {"versions", values_json(report.versions)},
+                   {"notes", report.notes},
+                   {"stages", stages_json(report.stages)},
+                   {"renderers", runs},
+                   {"comparisons", comparisons}};
+    return dump(out);
+}
+
+std::string diff_json(const FileDiff& diff, const std::string& name_a, const std::string& name_b)
+{
+    Json out{{"schema", "etalon-diff/1"},
+             {"a", name_a},
+             {"b", name_b},
+             {"film_a", film_json(diff.a)},
+             {"film_b", film_json(diff.b)}};
+    out.update(comparison_json(diff.comparison));
+    return dump(out);
+}
+
+}  // namespace etalon

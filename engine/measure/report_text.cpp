@@ -1,0 +1,126 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "engine/measure/diff.h"
+#include "engine/measure/report.h"
+#include "engine/measure/text.h"
+
+namespace etalon {
+namespace {
+
+using Row = std::vector<std::string>;
+
+/// Code points, which is columns for everything we print.
+std::size_t columns(const std::string& text)
+{
+    return static_cast<std::size_t>(
+        std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
+}
+
+/// Left-aligned columns two spaces apart; the last one is not padded.
+std::string aligned(const std::vector<Row>& rows)
+{
+    std::vector<std::size_t> widths;
+    for (const Row& row : rows) {
+        widths.resize(std::max(widths.size(), row.size()));
+        for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], columns(row[k]));
+    }
+    std::string out;
+    for (const Row& row : rows) {
+        for (std::size_t k = 0; k < row.size(); ++k) {
+            out += row[k];
+            if (k + 1 < row.size()) out.append(widths[k] - columns(row[k]) + 2, ' ');
+        }
+        out += '\n';
+    }
+    return out;
+}
+
+std::string shortened(const std::string& text, std::size_t limit)
+{
+    if (columns(text) <= limit) return text;
+    std::string out;
+    std::size_t count = 0;
+    for (const char c : text) {
+        if ((static_cast<unsigned char>(c) & 0xc0) != 0x80 && ++count >= limit) break;
+        out += c;
+    }
+    return out + "…";
+}
+
+double total_seconds(const RendererRun& run)
+{
+    double total = 0;
+    for (const StageTime& stage : run.stages) total += stage.seconds;
+    return total;
+}
+
+Row metric_cells(const PictureMetrics& m)
+{
+    return {percent(m.mean_relative), fmt::format("{:.3g}", m.relmse),
+            m.psnr ? fmt::format("{:.1f} dB", *m.psnr) : "identical", fmt::format("{:.4f}", m.ssim)};
+}
+
+std::string details(const Comparison& comparison)
+{
+    std::string out;
+    if (comparison.test)
+        out += fmt::format(
+            "  {} tests, false-alarm rate {}; a difference of {} in a tile or {} in the whole is found with "
+            "probability {:g}\n",
+            comparison.test->tests, percent(comparison.test->false_alarm), percent(comparison.test->detectable_tile),
+            percent(comparison.test->detectable_whole), comparison.test->power);
+    for (const std::string& reason : comparison.reasons) out += "  " + reason + "\n";
+    return out;
+}
+
+}  // namespace
+
+std::string report_table(const Report& report, int width)
+{
+    // The other columns of a run take about 70; what is left is the device's.
+    const std::size_t device_width = static_cast<std::size_t>(std::clamp(width - 70, 12, 60));
+    std::vector<Row> runs{{"renderer", "device", "time", "samples", "error of the picture"}};
+    for (const RendererRun& run : report.runs)
+        runs.push_back({run.name, shortened(run.device, device_width), seconds_text(total_seconds(run)),
+                        run.film.variance.empty() ? "-" : fmt::format("{}", run.film.samples), error_text(run.film)});
+    std::string out = fmt::format("{}{}\n", report.scene, report.interrupted ? " (interrupted)" : "") + aligned(runs);
+    if (report.comparisons.empty()) return out;
+
+    std::vector<Row> pairs{{"compared", "mean diff.", "relMSE", "PSNR", "SSIM", "verdict"}};
+    for (const RunComparison& pair : report.comparisons) {
+        Row row{report.runs[pair.a].name + " - " + report.runs[pair.b].name};
+        const Row cells = metric_cells(pair.comparison.metrics);
+        row.insert(row.end(), cells.begin(), cells.end());
+        row.emplace_back(name(pair.comparison.verdict));
+        pairs.push_back(std::move(row));
+    }
+    out += "\n" + aligned(pairs);
+    for (const RunComparison& pair : report.comparisons) {
+        const std::string lines = details(pair.comparison);
+        if (!lines.empty())
+            out += fmt::format("{} - {}:\n{}", report.runs[pair.a].name, report.runs[pair.b].name, lines);
+    }
+    return out;
+}
+
+std::string diff_table(const FileDiff& diff)
+{
+    const PictureMetrics& m = diff.comparison.metrics;
+    std::vector<Row> rows{{"verdict", std::string(name(diff.comparison.verdict))},
+                          {"size", fmt::format("{}x{}", diff.a.width, diff.a.height)},
+                          {"error of A", error_text(diff.a)},
+                          {"error of B", error_text(diff.b)},
+                          {"mean difference", percent(m.mean_relative)},
+                          {"RMSE", fmt::format("{:.4g}", m.rmse)},
+                          {"relMSE", fmt::format("{:.4g}", m.relmse)},
+                          {"PSNR", m.psnr ? fmt::format("{:.2f} dB", *m.psnr) : "identical"},
+                          {"SSIM", fmt::format("{:.5f}", m.ssim)},
+                          {"largest difference", fmt::format("{:.4g}", m.max)}};
+    if (m.alpha_max > 0) rows.push_back({"largest difference of alpha", fmt::format("{:.4g}", m.alpha_max)});
+    return aligned(rows) + details(diff.comparison);
+}
+
+}  // namespace etalon
