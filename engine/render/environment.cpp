@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
+#include "engine/render/resample.h"
 
 namespace etalon {
 namespace {
@@ -16,29 +16,6 @@ constexpr int kSourceWidth = 128;  // of the map that is integrated (SH-33, SH-3
 constexpr int kSourceHeight = 64;
 constexpr int kMirrorWidth = 512;  // most of table 0
 constexpr int kMirrorHeight = 256;
-
-/// The texels that one texel of a resampled axis covers, with the covered share of each.
-struct Coverage {
-    int first = 0;
-    std::vector<double> weights;  // sum 1
-};
-
-std::vector<Coverage> coverages(int from, int to)
-{
-    std::vector<Coverage> all(static_cast<std::size_t>(to));
-    for (int i = 0; i < to; ++i) {
-        // Integers in units of 1/to of a source texel: exact, so that a whole factor gives equal weights.
-        const std::int64_t begin = std::int64_t{i} * from;
-        const std::int64_t end = begin + from;
-        Coverage& coverage = all[static_cast<std::size_t>(i)];
-        coverage.first = static_cast<int>(begin / to);
-        for (std::int64_t j = coverage.first; j * to < end; ++j) {
-            const std::int64_t covered = std::min(end, (j + 1) * to) - std::max(begin, j * to);
-            coverage.weights.push_back(static_cast<double>(covered) / from);
-        }
-    }
-    return all;
-}
 
 /// A row of a map by colour planes, in double.
 struct Planes {
