@@ -1,0 +1,70 @@
+#include "engine/scene/extensions.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "engine/base/error.h"
+
+namespace etalon {
+
+namespace {
+
+constexpr std::array<std::string_view, 10> kSupported = {
+    "KHR_lights_punctual", "KHR_texture_transform", "KHR_materials_unlit", "KHR_materials_emissive_strength",
+    "KHR_node_visibility", "KHR_mesh_quantization", "EXT_mesh_gpu_instancing", "EXT_texture_webp",
+    // Listed, not chosen from: the default variant is what the file draws without the extension.
+    "KHR_materials_variants",
+    // Metadata alone.
+    "KHR_xmp_json_ld"};
+
+struct Mend {
+    std::string_view name;
+    std::string_view mend;
+};
+constexpr std::string_view kUncompress =
+    "decode the meshes first: gltf-transform copy in.glb out.glb writes them uncompressed";
+constexpr std::array<Mend, 5> kMends = {{
+    {"KHR_draco_mesh_compression", kUncompress},
+    {"EXT_meshopt_compression", kUncompress},
+    {"KHR_meshopt_compression", kUncompress},
+    {"KHR_texture_basisu", "use PNG or JPEG textures: gltf-transform ktxdecompress in.glb out.glb"},
+    {"KHR_materials_pbrSpecularGlossiness", "convert the materials: gltf-transform metalrough in.glb out.glb"},
+}};
+
+}  // namespace
+
+bool is_supported_extension(std::string_view name)
+{
+    return std::find(kSupported.begin(), kSupported.end(), name) != kSupported.end();
+}
+
+std::string mend_for_extension(std::string_view name)
+{
+    const auto row = std::find_if(kMends.begin(), kMends.end(), [&](const Mend& m) { return m.name == name; });
+    return std::string(
+        row != kMends.end() ? row->mend : "export again without it, or make it optional if the scene can do without");
+}
+
+void check_required_extensions(std::span<const std::string> required)
+{
+    for (const std::string& name : required)
+        if (!is_supported_extension(name))
+            throw Error(Blame::input,
+                        fmt::format("the file requires the extension {}, which Etalon does not read", name),
+                        mend_for_extension(name))
+                .at("/extensionsRequired");
+}
+
+std::vector<std::string> warnings_for_extensions(std::span<const std::string> used)
+{
+    std::vector<std::string> out;
+    for (const std::string& name : used)
+        if (!is_supported_extension(name))
+            out.push_back(
+                fmt::format("/extensionsUsed: {} is ignored: the picture is that of a reader without it", name));
+    return out;
+}
+
+}  // namespace etalon
