@@ -93,6 +93,23 @@ bool jpeg_is_whole(std::span<const std::byte> bytes)
     return false;
 }
 
+/// The same WebP file with its alpha switched off. OpenImageIO 2.4 multiplies WebP's colour by alpha whatever it is
+/// asked, which cannot be undone in 8 bits; from this copy it decodes the colour as it is.
+std::vector<std::byte> webp_without_alpha(std::span<const std::byte> bytes)
+{
+    std::vector<std::byte> out(bytes.begin(), bytes.end());
+    const auto at = [&](std::size_t i) { return std::to_integer<std::size_t>(out[i]); };
+    for (std::size_t i = 12; i + 8 < out.size();) {
+        const std::string_view kind(reinterpret_cast<const char*>(&out[i]), 4);
+        const std::size_t size = at(i + 4) | at(i + 5) << 8 | at(i + 6) << 16 | at(i + 7) << 24;
+        if (kind == "VP8X") out[i + 8] &= ~std::byte{0x10};
+        if (kind == "VP8L" && i + 12 < out.size()) out[i + 12] &= ~std::byte{0x10};  // bit 28 after the signature byte
+        if (kind == "ALPH") out[i] = std::byte{'_'};                                 // an unknown chunk is skipped
+        i += 8 + size + size % 2;
+    }
+    return out;
+}
+
 /// What the header claims, before memory is asked for on its word.
 void check_claims(const OIIO::ImageSpec& spec, Format format, std::size_t file_bytes, const std::string& name)
 {
@@ -145,7 +162,6 @@ void read_pixels(OIIO::ImageInput& input, Picture& picture, const std::string& n
 
 Picture decode_guarded(std::span<const std::byte> bytes, Format format, const std::string& name)
 {
-    if (format == Format::jpeg && !jpeg_is_whole(bytes)) throw bad(name, "the file ends early");
     OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
     const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(plugin(format));
     if (!input)
@@ -172,6 +188,16 @@ Picture decode_guarded(std::span<const std::byte> bytes, Format format, const st
     return picture;
 }
 
+/// Replaces the premultiplied colour of a WebP picture by the file's own.
+void restore_color(Picture& picture, std::span<const std::byte> bytes, const std::string& name)
+{
+    const Picture color = decode_guarded(webp_without_alpha(bytes), Format::webp, name);
+    if (color.channels.size() != 3 || color.width != picture.width || color.height != picture.height)
+        throw bad(name, "its alpha cannot be told from its colour");
+    for (std::size_t i = 0; 4 * i < picture.codes8.size(); ++i)
+        std::copy_n(&color.codes8[3 * i], 3, &picture.codes8[4 * i]);
+}
+
 /// Writes one picture into memory with the plugin of `format`; `data` is laid out as `spec` says.
 std::vector<std::byte> encode(Format format, const OIIO::ImageSpec& spec, const void* data)
 {
@@ -196,8 +222,11 @@ std::vector<std::byte> encode(Format format, const OIIO::ImageSpec& spec, const 
 Picture decode(std::span<const std::byte> bytes, std::span<const Format> accepted, const std::string& name)
 {
     const Format format = require_format(bytes, accepted, name);
+    if (format == Format::jpeg && !jpeg_is_whole(bytes)) throw bad(name, "the file ends early");
     try {
-        return decode_guarded(bytes, format, name);
+        Picture picture = decode_guarded(bytes, format, name);
+        if (format == Format::webp && picture.channels.size() == 4) restore_color(picture, bytes, name);
+        return picture;
     } catch (const Error&) {
         throw;
     } catch (const std::bad_alloc&) {
@@ -219,6 +248,7 @@ std::vector<std::byte> encode_exr(int width, int height, std::span<const Channel
         if (channel.name == "A") spec.alpha_channel = static_cast<int>(spec.channelnames.size()) - 1;
     }
     spec.attribute("compression", "zip");
+    spec.attribute("DateTime", "");  // else the writer says when it ran, and equal films differ in bytes
     for (const auto& [key, value] : text) spec.attribute(key, value);
 
     const std::size_t pixels = std::size_t(width) * std::size_t(height);
