@@ -106,9 +106,10 @@ std::string verdict_span(const Comparison& comparison)
 std::string renderers_table(const Report& report)
 {
     std::string out =
-        "<h2>Renderers</h2>\n<div class=\"scroll\"><table><thead><tr><th>renderer<th>device<th>samples<th>relative "
+        "<h2>Renderers</h2>\n<div "
+        "class=\"scroll\"><table><thead><tr><th>renderer</th><th>device</th><th>samples</th><th>relative "
         "standard error "
-        "(95% interval)<th>time</tr></thead><tbody>\n";
+        "(95% interval)</th><th>time</th></tr></thead><tbody>\n";
     for (const RendererRun& run : report.runs) {
         std::string times;
         for (const StageTime& stage : run.stages)
@@ -120,8 +121,9 @@ std::string renderers_table(const Report& report)
             error += fmt::format("<br><span class=\"bad\">{} NaN, {} Inf pixels</span>", checked.nan_pixels,
                                  checked.inf_pixels);
         if (checked.single_colour) error += "<br><span class=\"bad\">one single colour</span>";
-        out += fmt::format("<tr><td>{}<td>{}<td>{}<td>{}<td>{}</tr>\n", html_escape(run.label), html_escape(run.device),
-                           run.film.variance.empty() ? "–" : std::to_string(run.film.samples), error, times);
+        out += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n", html_escape(run.label),
+                           html_escape(run.device), run.film.variance.empty() ? "–" : std::to_string(run.film.samples),
+                           error, times);
     }
     return out + "</tbody></table></div>\n";
 }
@@ -130,18 +132,18 @@ std::string comparisons_table(const Report& report)
 {
     if (report.comparisons.empty()) return {};
     std::string out =
-        "<h2>Comparisons</h2>\n<div class=\"scroll\"><table><thead><tr><th>A<th>B<th>mean "
-        "difference<th>RMSE<th>relMSE<th>PSNR"
-        "<th>SSIM<th>verdict</tr></thead><tbody>\n";
+        "<h2>Comparisons</h2>\n<div class=\"scroll\"><table><thead><tr><th>A</th><th>B</th><th>mean "
+        "difference</th><th>RMSE</th><th>relMSE</th><th>PSNR</th><th>SSIM</th><th>verdict</th></tr></thead><tbody>\n";
     for (const RunComparison& pair : report.comparisons) {
         const PictureMetrics& m = pair.comparison.metrics;
         std::string why;
         for (const std::string& reason : pair.comparison.reasons) why += "<br>" + html_escape(reason);
-        out += fmt::format("<tr><td>{}<td>{}<td>{}<td>{:.4g}<td>{:.4g}<td>{}<td>{:.4f}<td>{}{}</tr>\n",
-                           html_escape(report.runs[pair.a].name), html_escape(report.runs[pair.b].name),
-                           percent(m.mean_relative), m.rmse, m.relmse,
-                           m.psnr ? fmt::format("{:.1f} dB", *m.psnr) : "identical", m.ssim,
-                           verdict_span(pair.comparison), why);
+        out += fmt::format(
+            "<tr><td>{}</td><td>{}</td><td>{}</td><td>{:.4g}</td><td>{:.4g}</td><td>{}</td><td>{:.4f}</td><td>{}{}</"
+            "td></tr>\n",
+            html_escape(report.runs[pair.a].name), html_escape(report.runs[pair.b].name), percent(m.mean_relative),
+            m.rmse, m.relmse, m.psnr ? fmt::format("{:.1f} dB", *m.psnr) : "identical", m.ssim,
+            verdict_span(pair.comparison), why);
     }
     return out + "</tbody></table></div>\n";
 }
@@ -215,7 +217,7 @@ std::string values_table(const char* title, const NamedValues& values)
     if (values.empty()) return {};
     std::string out = fmt::format("<details><summary>{}</summary><table>\n", title);
     for (const auto& [key, value] : values)
-        out += fmt::format("<tr><th>{}<td>{}</tr>\n", html_escape(key), html_escape(value));
+        out += fmt::format("<tr><th>{}</th><td>{}</td></tr>\n", html_escape(key), html_escape(value));
     return out + "</table></details>\n";
 }
 
