@@ -3,10 +3,11 @@
 # Compiler options of every target here. Contraction off: robust predicates rely on each rounding (docs/numerics.md).
 # A designated initialiser that leaves fields to their defaults is how aggregates are made here, not an oversight.
 add_library(etalon_options INTERFACE)
-target_compile_options(etalon_options INTERFACE
-    -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-missing-field-initializers -ffp-contract=off)
+# What is installed asks none of this of those who use it.
+target_compile_options(etalon_options INTERFACE $<BUILD_INTERFACE:
+    -Wall;-Wextra;-Wpedantic;-Wshadow;-Wconversion;-Wno-missing-field-initializers;-ffp-contract=off>)
 target_include_directories(etalon_options INTERFACE
-    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/etalon>)
 target_compile_features(etalon_options INTERFACE cxx_std_20)
 if(ETALON_SANITIZE)
     target_compile_options(etalon_options INTERFACE -fsanitize=${ETALON_SANITIZE} -fno-omit-frame-pointer

@@ -1,0 +1,121 @@
+#include "tools/etalon/renderers.h"
+
+#include <fmt/format.h>
+
+#include "engine/base/error.h"
+#include "engine/reference/reference.h"
+#include "engine/render/render.h"
+#include "engine/scene/knobs.h"
+#include "engine/scene/requirements.h"
+#include "etalon_version.h"
+#include "tools/etalon/settings.h"
+
+namespace etalon::cli {
+namespace {
+
+bool needs_device(Renderer renderer) { return renderer == Renderer::raster || renderer == Renderer::path; }
+
+std::string describe(const dmat4& m)
+{
+    std::string text;
+    for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 4; ++row) text += fmt::format("{}{}", text.empty() ? "" : " ", m[column][row]);
+    return text;
+}
+
+/// Everything needed to make the same film again.
+void describe(Film& film, const PosedScene& posed, const RenderSettings& settings)
+{
+    constexpr std::string_view kBackgrounds[] = {"environment", "transparent", "colour"};
+    constexpr std::string_view kShadings[] = {"auto", "blinn-phong", "pbr"};
+    auto& data = film.metadata;
+    data["scene"] = posed.scene->name;
+    data["renderer"] = name(settings.renderer);
+    data["version"] = kVersionFull;
+    data["compiler"] = kCompiler;
+    data["seed"] = fmt::format("{}", settings.seed);
+    data["samples"] = fmt::format("{}", film.samples);
+    const dvec3 b = settings.background_color;
+    std::string& text = data["settings"];
+    text = fmt::format("size={}x{} seed={} shading={} background={} background-color={},{},{}", posed.view.width, posed.view.height, settings.seed,
+                       kShadings[static_cast<int>(settings.shading)], kBackgrounds[static_cast<int>(settings.background)], b.x, b.y, b.z);
+    for (const Knob& knob : knobs())
+        if (knob.metric != KnobMetric::none) text += fmt::format(" {}={}", knob.name, knob_value(settings, knob.name));
+    data["world_from_camera"] = describe(posed.view.world_from_camera);
+    data["error"] = describe_error(estimate_error(film));
+}
+
+}  // namespace
+
+Renderers::Renderers(const Arguments& arguments) : options_(device_options(arguments)) {}
+
+gpu::Device& Renderers::device()
+{
+    if (!device_) device_.emplace(options_);
+    return *device_;
+}
+
+Film Renderers::draw(const std::string& scene_name, const PosedScene& posed, const RenderSettings& settings, const Progress& progress)
+{
+    const Requirements required = require(posed, settings);
+    Film film;
+    try {
+        switch (settings.renderer) {
+            case Renderer::raster: film = render_raster(device(), posed, required, settings, progress); break;
+            case Renderer::path: film = render_path(device(), posed, required, settings, progress); break;
+            case Renderer::reference: film = reference::render_path(posed, required, settings, progress); break;
+            case Renderer::reference_raster: film = reference::render_raster(posed, required, settings, progress); break;
+        }
+    } catch (Error& error) {
+        error.at(fmt::format("{}, {}", scene_name, label(settings.renderer)));
+        throw;
+    }
+    describe(film, posed, settings);
+    film.metadata["device"] = device_of(settings.renderer);
+    check_validation();
+    return film;
+}
+
+std::string Renderers::device_of(Renderer renderer)
+{
+    return needs_device(renderer) ? device().description() : "CPU, double precision";
+}
+
+void Renderers::check_validation() const
+{
+    if (!device_ || !device_->validating()) return;
+    const std::vector<std::string> messages = device_->validation_messages();
+    if (messages.empty()) return;
+    throw Error(Blame::machine, fmt::format("the Vulkan validation layers found {} faults; the first: {}", messages.size(), messages.front()),
+                "this is a fault of etalon or of the driver: please report it with the output of `etalon info`");
+}
+
+std::string_view name(Renderer renderer)
+{
+    switch (renderer) {
+        case Renderer::raster: return "raster";
+        case Renderer::path: return "path";
+        case Renderer::reference: return "reference";
+        case Renderer::reference_raster: return "reference-raster";
+    }
+    return {};
+}
+
+std::string_view label(Renderer renderer)
+{
+    switch (renderer) {
+        case Renderer::raster: return "Vulkan rasterizer";
+        case Renderer::path: return "Vulkan path tracer";
+        case Renderer::reference: return "reference path tracer";
+        case Renderer::reference_raster: return "reference rasterizer";
+    }
+    return {};
+}
+
+std::string describe_error(const std::optional<ErrorEstimate>& error)
+{
+    if (!error) return "not measured";
+    return fmt::format("{:.3g}% (95% interval {:.3g}% to {:.3g}%)", error->relative * 100, error->low * 100, error->high * 100);
+}
+
+}  // namespace etalon::cli

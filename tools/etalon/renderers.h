@@ -1,0 +1,42 @@
+#pragma once
+#include <optional>
+#include <string>
+
+#include "engine/base/progress.h"
+#include "engine/gpu/device.h"
+#include "engine/image/film.h"
+#include "engine/scene/pose.h"
+#include "engine/scene/settings.h"
+#include "tools/etalon/arguments.h"
+
+namespace etalon::cli {
+
+/// The renderers behind one call, and the device that two of them need: made at first use, kept for all later scenes.
+class Renderers {
+   public:
+    explicit Renderers(const Arguments& arguments);
+
+    /// Film::metadata gets scene, renderer, settings, seed, version and device.
+    Film draw(const std::string& scene_name, const PosedScene& posed, const RenderSettings& settings, const Progress& progress);
+
+    /// "CPU, double precision" for the references, else what Vulkan device it is.
+    std::string device_of(Renderer renderer);
+
+    /// With --validate: throws Error(machine) quoting what the validation layers said, if anything.
+    void check_validation() const;
+
+   private:
+    gpu::Device& device();
+
+    gpu::DeviceOptions options_;
+    std::optional<gpu::Device> device_;
+};
+
+/// "path", as --renderer takes it, and "Vulkan path tracer", as people say it.
+std::string_view name(Renderer renderer);
+std::string_view label(Renderer renderer);
+
+/// "1.23% (95% interval 1.10% to 1.36%)"; "not measured" where it was not.
+std::string describe_error(const std::optional<ErrorEstimate>& error);
+
+}  // namespace etalon::cli

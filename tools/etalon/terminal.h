@@ -1,0 +1,30 @@
+#pragma once
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace etalon::cli {
+
+/// How the program speaks: data goes to standard output, everything said about it to standard error.
+struct Terminal {
+    bool colour = false;    ///< standard error takes colours: a terminal, NO_COLOR unset or empty, TERM not "dumb"
+    bool terminal = false;  ///< standard error is a terminal
+    int columns = 80;       ///< of that terminal
+
+    static Terminal of_standard_error();
+};
+
+/// One line for the user on standard error.
+void say(std::string_view line);
+/// The same with "warning: " in yellow before it.
+void warn(const Terminal& terminal, std::string_view line);
+
+/// Writes to standard output. A reader that closed the pipe is no failure; any other is Error(machine).
+void put(std::string_view text);
+void put(std::span<const std::byte> bytes);
+
+/// A time as people read it: "0.42 s", "3 min 12 s", "2 h 5 min".
+std::string describe_seconds(double seconds);
+
+}  // namespace etalon::cli
