@@ -1,0 +1,250 @@
+#include "engine/reference/path.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "shaders/shared/rng.h"
+
+namespace etalon::reference {
+namespace {
+
+// Dimensions of a path: two for the camera, then kPerVertex for each vertex.
+constexpr std::uint32_t kFilm = 0, kLens = 1, kFirstVertex = 2, kPerVertex = 8;
+constexpr std::uint32_t kDirection = 0, kLobeAndRoulette = 1, kAreaPoint = 2, kPicks = 3, kEnvironment = 4;
+constexpr std::uint32_t kPassing = 0x80000000u;
+constexpr int kFirstRoulette = 3;  // vertices that always go on: short paths carry most of the light
+
+double max_channel(const dvec3& c) { return std::max({c.x, c.y, c.z}); }
+double mean(const dvec3& c) { return (c.x + c.y + c.z) / 3; }
+
+double unit_double(std::uint32_t high, std::uint32_t low)
+{
+    const std::uint64_t bits = (std::uint64_t{high} << 32) | low;
+    return static_cast<double>(bits >> 11) * 0x1p-53;
+}
+
+// To 32 bits, and away from the numbers that the path tracer draws with the same seed: their films must be independent.
+// (splitmix64's finalizer: Steele, Lea & Flood 2014.)
+std::uint32_t fold_seed(std::uint64_t seed)
+{
+    std::uint64_t z = seed + 0x9e3779b97f4a7c15u;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return static_cast<std::uint32_t>(z ^ (z >> 31));
+}
+
+// The frame of a BSDF: +Z along `n`.
+struct ShadingFrame {
+    explicit ShadingFrame(const dvec3& normal) : n(normal)
+    {
+        const dvec3 other = std::abs(n.x) > 0.7 ? dvec3(0, 1, 0) : dvec3(1, 0, 0);
+        t = normalize(cross(other, n));
+        b = cross(n, t);
+    }
+    dvec3 local(const dvec3& w) const { return {dot(w, t), dot(w, b), dot(w, n)}; }
+    dvec3 world(const dvec3& l) const { return l.x * t + l.y * b + l.z * n; }
+    dvec3 t, b, n;
+};
+
+// Light from wi that the shading normal would let in must come from the same side of the surface itself.
+bool sides_agree(const Surface& s, const dvec3& wi) { return (dot(s.n, wi) > 0) == (dot(s.ng, wi) > 0); }
+
+struct Response {
+    dvec3 value{0};  // f |cosθ|
+    double pdf = 0;
+};
+
+Response respond(const Surface& s, const dvec3& wo, const dvec3& wi)
+{
+    if (!sides_agree(s, wi)) return {};
+    const ShadingFrame frame(s.n);
+    const dvec3 o = frame.local(wo), i = frame.local(wi);
+    return {evaluate(s.bsdf, o, i), pdf(s.bsdf, o, i)};
+}
+
+}  // namespace
+
+PathRandom::PathRandom(std::uint32_t pixel, std::uint32_t sample, std::uint64_t seed)
+    : pixel_(pixel), sample_(sample), seed_(fold_seed(seed))
+{}
+
+dvec2 PathRandom::pair(std::uint32_t dimension) const
+{
+    const uvec4 bits = shared::random_bits(pixel_, sample_, dimension, seed_);
+    return {unit_double(bits.x, bits.y), unit_double(bits.z, bits.w)};
+}
+
+dvec2 PathRandom::in_pixel() const { return pair(kFilm); }
+
+double PathRandom::of_shape(std::uint32_t segment, const Shape& shape, bool leaving) const
+{
+    const uvec4 mixed = shared::random_bits(shape.object, shape.element, 2 * segment + (leaving ? 1 : 0), seed_);
+    const uvec4 bits = shared::random_bits(pixel_ ^ mixed.x, sample_ ^ mixed.y, kPassing + segment, mixed.z);
+    return unit_double(bits.x, bits.y);
+}
+
+PathTracer::PathTracer(const PosedScene& posed, const World& world, const RenderSettings& settings, PathChoices choices)
+    : posed_(&posed),
+      world_(&world),
+      camera_(posed.view),
+      area_(world),
+      environment_(posed.environment),
+      choices_(choices),
+      background_(settings.background),
+      background_color_(settings.background_color),
+      max_depth_(settings.max_depth),
+      russian_roulette_(settings.russian_roulette)
+{}
+
+// (SH-23) A ray that meets nothing.
+void PathTracer::leave(const Ray& ray, int depth, const dvec3& throughput, double weight, PathResult& result) const
+{
+    if (depth == 1) {
+        result.alpha = background_ == Background::transparent ? 0 : 1;
+        if (background_ == Background::colour) result.radiance = background_color_;
+        if (background_ != Background::environment) return;
+    }
+    if (posed_->environment.is_black()) return;
+    result.radiance += throughput * weight * environment_radiance(posed_->environment, ray.direction);
+}
+
+PathResult PathTracer::trace(const dvec2& film, const PathRandom& random) const
+{
+    PathResult result;
+    if (max_depth_ < 1) return result;
+    Ray ray = camera_.has_lens() ? camera_.through_lens(film, sample_disk(random.pair(kLens))) : camera_.pinhole(film);
+    dvec3 throughput(1);
+    double spread = 1;         // (η_t/η_i)² so far: what refraction took from the radiance, not from the chance to matter
+    bool by_delta = true;      // no light sampling competes with the ray that is traced
+    double ray_pdf = 0;
+    dvec3 from(0);
+    for (int depth = 1;; ++depth) {
+        const auto hit = world_->index.closest(ray, [&](const Hit& h) {
+            const double opaque = opacity(*world_, ray, h);
+            if (opaque == 0 || opaque == 1) return opaque == 1;
+            const Shape& shape = world_->index.shapes()[h.shape];
+            const bool leaving = shape.is_sphere() && dot(ray.origin + h.t * ray.direction - shape.p0, ray.direction) > 0;
+            return random.of_shape(static_cast<std::uint32_t>(depth), shape, leaving) < opaque;
+        });
+        const bool alone = by_delta || !choices_.sample_lights;
+        if (!hit) {
+            leave(ray, depth, throughput, alone ? 1 : power_heuristic(ray_pdf, environment_.pdf(ray.direction)), result);
+            return result;
+        }
+        if (depth == 1) result.alpha = 1;
+        const Surface surface = surface_at(*world_, ray, *hit);
+        if (surface.emission != dvec3(0))
+            result.radiance += throughput * surface.emission * (alone ? 1 : power_heuristic(ray_pdf, area_.pdf(from, ray, *hit)));
+        if (surface.is_black) return result;
+        if (depth == max_depth_) {
+            result.truncated = true;
+            return result;
+        }
+
+        const std::uint32_t dimension = kFirstVertex + kPerVertex * static_cast<std::uint32_t>(depth - 1);
+        const dvec3 wo = -ray.direction;
+        if (choices_.sample_lights) result.radiance += throughput * direct(surface, wo, random, dimension);
+        else result.radiance += throughput * from_punctual(surface, wo, random.pair(dimension + kPicks).y);
+
+        const ShadingFrame frame(surface.n);
+        const dvec2 lobe = random.pair(dimension + kLobeAndRoulette);
+        const auto scattered = sample(surface.bsdf, frame.local(wo), dvec3(random.pair(dimension + kDirection), lobe.x));
+        if (!scattered) return result;
+        const dvec3 wi = frame.world(scattered->wi);
+        if (!sides_agree(surface, wi)) return result;
+        throughput *= scattered->weight;
+        if (throughput == dvec3(0)) return result;
+        if (dot(wi, surface.ng) < 0) spread *= surface.bsdf.ior * surface.bsdf.ior;
+        by_delta = scattered->delta;
+        ray_pdf = scattered->pdf;
+        if (russian_roulette_ && depth >= kFirstRoulette) {  // (MC-4)
+            const double survive = std::clamp(max_channel(throughput) * spread, 0.05, 1.0);
+            if (lobe.y >= survive) return result;
+            throughput /= survive;
+        }
+        from = surface.position;
+        ray = Ray{.origin = offset_origin(surface.position, surface.error, surface.ng, wi), .direction = wi};
+    }
+}
+
+// Part of the light along a ray that arrives; `light` does not shadow itself.
+double PathTracer::visibility(const Ray& ray, std::uint32_t light) const
+{
+    return world_->index.transmittance(ray, [&](const Hit& hit) {
+        return hit.shape == light ? 1.0 : 1 - opacity(*world_, ray, hit);
+    });
+}
+
+double PathTracer::visibility(const Surface& surface, const dvec3& target, std::uint32_t light) const
+{
+    const dvec3 origin = offset_origin(surface.position, surface.error, surface.ng, target - surface.position);
+    return visibility(Ray{.origin = origin, .direction = target - origin, .t_max = 1}, light);
+}
+
+constexpr std::uint32_t kNoShape = 0xffffffffu;
+
+// Next-event estimation: one point of an emitter, one punctual light, one direction of the environment.
+dvec3 PathTracer::direct(const Surface& surface, const dvec3& wo, const PathRandom& random, std::uint32_t dimension) const
+{
+    if (surface.bsdf.is_delta()) return dvec3(0);
+    dvec3 sum(0);
+    if (!area_.empty()) sum += from_area(surface, wo, random, dimension);
+    if (!posed_->lights.empty()) sum += from_punctual(surface, wo, random.pair(dimension + kPicks).y);
+    if (!environment_.empty()) sum += from_environment(surface, wo, random.pair(dimension + kEnvironment));
+    return sum;
+}
+
+dvec3 PathTracer::from_area(const Surface& surface, const dvec3& wo, const PathRandom& random, std::uint32_t dimension) const
+{
+    const auto light = area_.sample(surface.position, random.pair(dimension + kPicks).x, random.pair(dimension + kAreaPoint));
+    if (!light) return dvec3(0);
+    const Response response = respond(surface, wo, light->wi);
+    if (response.value == dvec3(0)) return dvec3(0);
+    const double visible = visibility(surface, light->point, light->shape);
+    return visible * power_heuristic(light->pdf, response.pdf) / light->pdf * response.value * light->radiance;
+}
+
+// All punctual lights are weighed, one is chosen by what it would bring unshadowed, and one shadow ray is traced.
+dvec3 PathTracer::from_punctual(const Surface& surface, const dvec3& wo, double pick) const
+{
+    if (surface.bsdf.is_delta()) return dvec3(0);
+    const auto contribution = [&](const PosedLight& light, const Incident& in) {
+        if (in.irradiance == dvec3(0) || light.light.intensity == 0) return dvec3(0);
+        return respond(surface, wo, in.wi).value * in.irradiance;
+    };
+    double total = 0;
+    for (const PosedLight& light : posed_->lights) total += mean(contribution(light, incident(light, surface.position)));
+    if (!(total > 0)) return dvec3(0);
+    double sum = 0;
+    for (const PosedLight& light : posed_->lights) {
+        const Incident in = incident(light, surface.position);
+        const dvec3 bring = contribution(light, in);
+        const double share = mean(bring);
+        sum += share;
+        if (share == 0 || (pick * total >= sum && &light != &posed_->lights.back())) continue;
+        const double visible =
+            std::isfinite(in.distance)
+                ? visibility(surface, light.position, kNoShape)
+                : visibility(Ray{.origin = offset_origin(surface.position, surface.error, surface.ng, in.wi), .direction = in.wi},
+                             kNoShape);
+        return visible * total / share * bring;
+    }
+    return dvec3(0);
+}
+
+dvec3 PathTracer::from_environment(const Surface& surface, const dvec3& wo, const dvec2& u) const
+{
+    const EnvironmentSampler::Sample light = environment_.sample(u);
+    if (!(light.pdf > 0)) return dvec3(0);
+    const Response response = respond(surface, wo, light.direction);
+    if (response.value == dvec3(0)) return dvec3(0);
+    const Ray ray{.origin = offset_origin(surface.position, surface.error, surface.ng, light.direction),
+                  .direction = light.direction};
+    const double visible = visibility(ray, kNoShape);
+    if (visible == 0) return dvec3(0);
+    return visible * power_heuristic(light.pdf, response.pdf) / light.pdf * response.value *
+           environment_radiance(posed_->environment, light.direction);
+}
+
+}  // namespace etalon::reference

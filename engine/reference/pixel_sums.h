@@ -1,0 +1,34 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "engine/image/film.h"
+
+namespace etalon::reference {
+
+/// Mean and scatter of the samples of one pixel, one after another (Welford 1962; MC-2, promises M1–M3).
+class PixelSum {
+   public:
+    /// A sample that is not finite is counted and left out (promise M13).
+    void add(const dvec3& radiance, double alpha);
+
+    std::uint64_t count() const { return count_; }
+    std::uint64_t nonfinite() const { return nonfinite_; }
+    const dvec3& mean() const { return mean_; }
+    double alpha() const { return alpha_; }
+    dvec3 variance_of_mean() const;  ///< nit²; 0 under two samples
+
+   private:
+    dvec3 mean_{0}, m2_{0};
+    double alpha_ = 0;
+    std::uint64_t count_ = 0;
+    std::uint64_t nonfinite_ = 0;
+};
+
+/// The film of `sums`, `samples` a pixel as the caller asked for (what was left out is in Film::nonfinite).
+Film film_of(const std::vector<PixelSum>& sums, int width, int height, std::uint64_t samples);
+
+/// √(mean variance of the mean) / mean radiance over the picture: what progress reports. 0 for a black picture.
+double relative_error(const std::vector<PixelSum>& sums);
+
+}  // namespace etalon::reference

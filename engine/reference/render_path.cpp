@@ -1,0 +1,113 @@
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+
+#include "engine/base/error.h"
+#include "engine/base/parallel.h"
+#include "engine/reference/aov.h"
+#include "engine/reference/path.h"
+#include "engine/reference/pixel_sums.h"
+#include "engine/reference/reference.h"
+
+namespace etalon::reference {
+namespace {
+
+constexpr std::size_t kTile = 16;              // pixels a side: one unit of work of a thread
+constexpr double kSecondsPerPass = 0.5;        // how long a stop may have to wait for whole passes, roughly
+constexpr std::uint64_t kMaxSamples = 0xffffffffu;
+
+/// The samples of a picture so far. A pass gives every pixel the same number more, or, stopped, leaves all as it was.
+class Accumulation {
+   public:
+    Accumulation(const PathTracer& tracer, int width, int height, std::uint64_t seed, unsigned threads)
+        : tracer_(&tracer),
+          width_(static_cast<std::size_t>(width)),
+          height_(static_cast<std::size_t>(height)),
+          seed_(seed),
+          threads_(threads),
+          sums_(width_ * height_),
+          next_(width_ * height_)
+    {}
+
+    /// True if the pass was completed.
+    bool pass(std::uint64_t count, const Progress& progress, bool may_stop)
+    {
+        const std::size_t across = (width_ + kTile - 1) / kTile, down = (height_ + kTile - 1) / kTile;
+        std::vector<std::uint64_t> truncated(across * down, 0);
+        std::atomic<bool> stopped = false;
+        parallel_for(across * down, [&](std::size_t tile) {
+            if (may_stop && progress.stopped()) stopped = true;
+            if (!stopped) truncated[tile] = render_tile(tile % across, tile / across, count);
+        }, threads_);
+        if (stopped) return false;
+        std::swap(sums_, next_);
+        samples_ += count;
+        for (const std::uint64_t t : truncated) truncated_ += t;
+        return true;
+    }
+
+    const std::vector<PixelSum>& sums() const { return sums_; }
+    std::uint64_t samples() const { return samples_; }
+    std::uint64_t truncated() const { return truncated_; }
+
+   private:
+    std::uint64_t render_tile(std::size_t tile_x, std::size_t tile_y, std::uint64_t count)
+    {
+        std::uint64_t truncated = 0;
+        for (std::size_t y = tile_y * kTile; y < std::min(height_, (tile_y + 1) * kTile); ++y)
+            for (std::size_t x = tile_x * kTile; x < std::min(width_, (tile_x + 1) * kTile); ++x) {
+                const std::size_t pixel = y * width_ + x;
+                PixelSum sum = sums_[pixel];
+                for (std::uint64_t s = samples_; s < samples_ + count; ++s) {
+                    const PathRandom random(static_cast<std::uint32_t>(pixel), static_cast<std::uint32_t>(s), seed_);
+                    const dvec2 film = dvec2(static_cast<double>(x), static_cast<double>(y)) + random.in_pixel();
+                    const PathResult path = tracer_->trace(film, random);
+                    sum.add(path.radiance, path.alpha);
+                    truncated += path.truncated ? 1 : 0;
+                }
+                next_[pixel] = sum;
+            }
+        return truncated;
+    }
+
+    const PathTracer* tracer_;
+    std::size_t width_, height_;
+    std::uint64_t seed_;
+    unsigned threads_;
+    std::vector<PixelSum> sums_, next_;
+    std::uint64_t samples_ = 0;
+    std::uint64_t truncated_ = 0;
+};
+
+}  // namespace
+
+Film render_path(const PosedScene& posed, const Requirements& required, const RenderSettings& settings, const Progress& progress)
+{
+    assume(posed.scene != nullptr && posed.view.width > 0 && posed.view.height > 0);
+    if (settings.spp < 1 || settings.spp > kMaxSamples)
+        throw Error(Blame::input, "samples per pixel must be 1 … 4294967295, not " + std::to_string(settings.spp));
+    progress.report({.stage = "building the BVH", .fraction = 0, .error = {}, .samples = {}});
+    const World world(posed, required.texture_used, false);
+    const PathTracer tracer(posed, world, settings);
+    Accumulation picture(tracer, posed.view.width, posed.view.height, settings.seed, settings.threads);
+
+    // How many samples a pass has never changes a bit: each is a function of its number alone, and they are added in order.
+    std::uint64_t count = 1;
+    while (picture.samples() < settings.spp && !(picture.samples() > 0 && progress.stopped())) {
+        const auto begin = std::chrono::steady_clock::now();
+        const bool may_stop = picture.samples() > 0;  // a picture of no sample would be none
+        if (!picture.pass(std::min(count, settings.spp - picture.samples()), progress, may_stop)) break;
+        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+        if (seconds < kSecondsPerPass / 2) count *= 2;
+        progress.report({.stage = "path tracing",
+                         .fraction = static_cast<double>(picture.samples()) / static_cast<double>(settings.spp),
+                         .error = relative_error(picture.sums()),
+                         .samples = picture.samples()});
+    }
+    Film film = film_of(picture.sums(), posed.view.width, posed.view.height, picture.samples());
+    film.truncated = picture.truncated();
+    if (settings.aovs) film.aovs = render_aovs(world, tracer.camera(), false, settings.threads);
+    return film;
+}
+
+}  // namespace etalon::reference

@@ -1,0 +1,207 @@
+#include "engine/reference/surface.h"
+
+#include <cmath>
+
+namespace etalon::reference {
+namespace {
+
+constexpr double kUnit = std::numeric_limits<double>::epsilon() / 2;
+constexpr double kSmallestAlpha = 1e-4;  // exact models below it: D overflows long before it matters (S7)
+
+dvec3 normalized_or(const dvec3& v, const dvec3& otherwise)
+{
+    const double size = length(v);
+    return size > 0 && std::isfinite(size) ? v / size : otherwise;
+}
+
+template <class Vector>
+auto weigh(const std::vector<Vector>& values, const std::array<std::uint32_t, 3>& v, double b1, double b2)
+{
+    using Wide = glm::vec<Vector::length(), double, glm::defaultp>;
+    const Wide a0(values[v[0]]), a1(values[v[1]]), a2(values[v[2]]);
+    return a0 + b1 * (a1 - a0) + b2 * (a2 - a0);  // (TR-4), so that a constant stays constant
+}
+
+World::Frame frame_of(const dmat4& world_from_object)
+{
+    World::Frame frame;
+    const dmat3 m(world_from_object);
+    frame.world_from_object = m;
+    frame.handedness = glm::determinant(m) < 0 ? -1 : 1;
+    frame.normal_from_object = frame.handedness * dmat3(cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1]));
+    return frame;
+}
+
+}  // namespace
+
+bool is_exact_model(BsdfModel model)
+{
+    return model != BsdfModel::metallic_roughness && model != BsdfModel::unlit;
+}
+
+bool is_dielectric(BsdfModel model) { return model == BsdfModel::dielectric || model == BsdfModel::rough_dielectric; }
+
+World::World(const PosedScene& p, const std::vector<bool>& textures_used, bool mipmaps)
+    : posed(&p), index(p), textures(*p.scene, textures_used, mipmaps)
+{
+    for (const Draw& draw : p.draws) frames.push_back(frame_of(draw.world_from_object));
+    for (const Material& m : p.scene->materials)
+        always_opaque.push_back(m.alpha_mode == AlphaMode::opaque && (m.double_sided || is_exact_model(m.model)));
+}
+
+Attributes interpolate(const Primitive& primitive, const World::Frame& frame, const std::array<std::uint32_t, 3>& v,
+                       double b1, double b2)
+{
+    Attributes out;
+    if (primitive.has_normals && !primitive.normals.empty())
+        out.normal = frame.normal_from_object * weigh(primitive.normals, v, b1, b2);
+    if (!primitive.tangents.empty()) {
+        const dvec4 t = weigh(primitive.tangents, v, b1, b2);
+        const double sign = primitive.tangents[v[0]].w < 0 ? -1 : 1;  // w is constant over a triangle
+        out.tangent = dvec4(frame.world_from_object * dvec3(t), sign * frame.handedness);
+    }
+    for (std::size_t set = 0; set < 2; ++set)
+        if (!primitive.uv[set].empty()) out.at.uv[set] = weigh(primitive.uv[set], v, b1, b2);
+    if (!primitive.colors.empty()) out.color = weigh(primitive.colors, v, b1, b2);
+    return out;
+}
+
+MaterialPoint evaluate(const Material& m, const TextureSet& textures, const Attributes& attributes)
+{
+    MaterialPoint out;
+    const dvec4 base = m.base_color * attributes.color * textures.sample(m.base_color_texture, Coding::srgb, attributes.at);
+    out.color = dvec3(base);
+    out.alpha = m.alpha_mode == AlphaMode::opaque ? 1 : base.w;
+    const dvec4 mr = textures.sample(m.metallic_roughness_texture, Coding::linear, attributes.at);
+    out.metallic = m.metallic * mr.z;
+    out.roughness = m.roughness * mr.y;
+    if (m.occlusion_texture.present())
+        out.occlusion = 1 + m.occlusion_strength * (textures.sample(m.occlusion_texture, Coding::linear, attributes.at).x - 1);
+    if (m.model == BsdfModel::unlit)
+        out.emission = out.color;
+    else if (m.emission != dvec3(0))
+        out.emission = m.emission * dvec3(textures.sample(m.emissive_texture, Coding::srgb, attributes.at));
+    return out;
+}
+
+dvec3 shading_normal(const Material& m, const TextureSet& textures, const Attributes& attributes, const dvec3& ng)
+{
+    const dvec3 n = normalized_or(attributes.normal, ng);
+    if (!m.normal_texture.present() || attributes.tangent.w == 0) return n;
+    const dvec3 texel = 2.0 * dvec3(textures.sample(m.normal_texture, Coding::linear, attributes.at)) - 1.0;
+    const dvec3 t = normalized_or(dvec3(attributes.tangent), dvec3(0));
+    const dvec3 b = cross(n, t) * attributes.tangent.w;
+    return normalized_or(m.normal_scale * (texel.x * t + texel.y * b) + texel.z * n, n);
+}
+
+Bsdf bsdf_of(const Material& m, const MaterialPoint& point, bool front)
+{
+    Bsdf bsdf;
+    bsdf.model = m.model;
+    bsdf.color = point.color;
+    switch (m.model) {
+        case BsdfModel::metallic_roughness:  // (SH-14)
+            bsdf.color = point.color * (1 - point.metallic);
+            bsdf.f0 = dvec3(0.04) + point.metallic * (point.color - dvec3(0.04));
+            bsdf.alpha = std::max(point.roughness * point.roughness, 1e-3);
+            break;
+        case BsdfModel::rough_conductor:
+            bsdf.eta = m.eta;
+            bsdf.k = m.k;
+            bsdf.alpha = std::max(m.ggx_alpha, kSmallestAlpha);
+            break;
+        case BsdfModel::dielectric:
+        case BsdfModel::rough_dielectric:
+            bsdf.ior = front ? m.eta.x : 1 / m.eta.x;
+            bsdf.alpha = std::max(m.ggx_alpha, kSmallestAlpha);
+            break;
+        default: break;
+    }
+    return bsdf;
+}
+
+namespace {
+
+Attributes attributes_at(const World& world, const Shape& shape, const Hit& hit)
+{
+    if (shape.is_sphere()) return {};
+    const Primitive& primitive = world.posed->primitive(world.posed->draws[shape.object]);
+    const std::uint32_t* i = primitive.indices.data() + std::size_t{3} * shape.element;
+    return interpolate(primitive, world.frames[shape.object], {i[0], i[1], i[2]}, hit.b1, hit.b2);
+}
+
+// Position from the shape, not along the ray: its error does not grow with the distance travelled (promise G23).
+void place(Surface& surface, const Shape& shape, const Ray& ray, const Hit& hit)
+{
+    if (shape.is_sphere()) {
+        const dvec3 towards = normalize(ray.origin + hit.t * ray.direction - shape.p0);
+        surface.position = shape.p0 + shape.p1.x * towards;
+        surface.error = 8 * kUnit * (glm::abs(shape.p0) + dvec3(2 * shape.p1.x));
+        return;
+    }
+    const double b0 = 1 - hit.b1 - hit.b2;
+    const dvec3 x0 = b0 * shape.p0, x1 = hit.b1 * shape.p1, x2 = hit.b2 * shape.p2;
+    surface.position = x0 + x1 + x2;
+    // γ₇ of PBRT 4th ed. §6.8, and the rounding of b0.
+    surface.error = 10 * kUnit * (glm::abs(x0) + glm::abs(x1) + glm::abs(x2) + glm::abs(shape.p0));
+}
+
+}  // namespace
+
+Surface surface_at(const World& world, const Ray& ray, const Hit& hit)
+{
+    const Shape& shape = world.index.shapes()[hit.shape];
+    const Material& material = world.material(shape);
+    const dvec3 wo = -normalize(ray.direction);
+    Surface s;
+    s.object = shape.object;
+    s.material = shape.material;
+    place(s, shape, ray, hit);
+    s.attributes = attributes_at(world, shape, hit);
+    s.point = evaluate(material, world.textures, s.attributes);
+    s.ng = geometric_normal(shape, s.position);
+    s.n = shading_normal(material, world.textures, s.attributes, s.ng);
+    s.front = dot(s.ng, wo) > 0;  // (SH-3)
+    if (!s.front) {
+        s.ng = -s.ng;
+        s.n = -s.n;
+    }
+    if (dot(s.n, wo) <= 0) s.n = s.ng;  // (SH-4)
+    const bool emits = s.front || (material.double_sided && !material.emits_front_only);
+    if (emits || material.model == BsdfModel::unlit) s.emission = s.point.emission;
+    s.bsdf = bsdf_of(material, s.point, s.front);
+    const bool black_back = !s.front && !material.double_sided && !is_dielectric(material.model);  // (SH-6)
+    s.is_black = black_back || s.bsdf.is_black();
+    return s;
+}
+
+dvec3 emission_at(const World& world, const Ray& ray, const Hit& hit)
+{
+    const Shape& shape = world.index.shapes()[hit.shape];
+    const Material& m = world.material(shape);
+    const bool front = dot(geometric_normal(shape, ray.origin + hit.t * ray.direction), ray.direction) < 0;
+    if (!front && (!m.double_sided || m.emits_front_only)) return dvec3(0);
+    if (!m.emissive_texture.present()) return m.emission;
+    const Attributes attributes = attributes_at(world, shape, hit);
+    return m.emission * dvec3(world.textures.sample(m.emissive_texture, Coding::srgb, attributes.at));
+}
+
+double opacity(const World& world, const Ray& ray, const Hit& hit, bool cull_all)
+{
+    const Shape& shape = world.index.shapes()[hit.shape];
+    if (world.always_opaque[shape.material] && !cull_all) return 1;
+    const Material& m = world.material(shape);
+    const bool passes_back = !m.double_sided && (cull_all ? !is_dielectric(m.model) : !is_exact_model(m.model));
+    if (passes_back) {
+        const dvec3 ng = geometric_normal(shape, ray.origin + hit.t * ray.direction);
+        if (!(dot(ng, ray.direction) < 0)) return 0;
+    }
+    if (m.alpha_mode == AlphaMode::opaque) return 1;
+    const Attributes attributes = attributes_at(world, shape, hit);
+    const double alpha =
+        (m.base_color * attributes.color * world.textures.sample(m.base_color_texture, Coding::srgb, attributes.at)).w;
+    if (m.alpha_mode == AlphaMode::mask) return alpha < m.alpha_cutoff ? 0 : 1;
+    return std::clamp(alpha, 0.0, 1.0);
+}
+
+}  // namespace etalon::reference
