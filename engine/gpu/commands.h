@@ -29,6 +29,7 @@ struct DepthTarget {
     Image* image = nullptr;
     std::optional<float> clear = 0.f;  ///< reversed depth: 0 is infinitely far
     bool store = false;
+    Image* resolve = nullptr;  ///< single-sample image that receives sample 0
 };
 
 /// Milliseconds that the device spent between begin_region and end_region.
@@ -83,8 +84,6 @@ class Commands {
     /// Scales the whole of `from` into the whole of `to` (level 0, layer 0); prepared as copy_source and copy_target.
     void blit(const Image& from, const Image& to, VkFilter filter);
     void clear(const Image& image, const VkClearColorValue& value);  ///< prepared as copy_target
-    /// Fills levels 1 and up from level 0 by repeated 2x2 box (linear blit), all layers; leaves it `after`.
-    void generate_mips(Image& image, ImageUse after = ImageUse::sampled);
 
     /// Prepares the targets and starts drawing to them; viewport and scissor are the whole of them.
     void begin_rendering(std::span<const ColorTarget> colors, const std::optional<DepthTarget>& depth = std::nullopt);

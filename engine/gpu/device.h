@@ -67,6 +67,7 @@ struct DeviceLimits {
     double timestamp_ns = 0;          ///< nanoseconds per tick; 0: the queue has no timestamps
     bool float64 = false;
     bool int64 = false;
+    bool primitive_id = false;  ///< gl_PrimitiveID in fragment shaders (geometryShader)
     bool wide_lines = false;
     bool wireframe = false;
 };
@@ -110,6 +111,9 @@ class Device {
     MemoryUse memory() const;
     /// True where device memory is the host's: buffers of MemoryKind::device are mapped and need no staging.
     bool unified_memory() const;
+
+    /// Whether an optimally tiled 2D image of `format` can do all of `features` with so many samples.
+    bool supports(VkFormat format, VkFormatFeatureFlags features, std::uint32_t samples = 1) const;
 
     /// Blocks until the submission has finished. Throws Error(machine) when the time is over or the device is lost.
     void wait(Ticket ticket, std::chrono::milliseconds timeout = std::chrono::minutes(2)) const;

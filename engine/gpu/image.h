@@ -1,6 +1,7 @@
 #pragma once
-#include <array>
+#include <algorithm>
 #include <cstddef>
+#include <cstring>
 #include <span>
 #include <string>
 #include <vector>
@@ -40,7 +41,7 @@ class Image {
     /// An image that someone else owns (a swapchain's) under a view of ours.
     Image(Device& device, VkImage image, const ImageSpec& spec);
 
-    VkImage handle() const { return image_; }
+    VkImage handle() const { return image_.get(); }
     VkImageView view() const { return view_.get(); }
     VkFormat format() const { return spec_.format; }
     std::uint32_t width(std::uint32_t mip = 0) const { return std::max(1u, spec_.width >> mip); }
@@ -49,7 +50,7 @@ class Image {
     std::uint32_t mips() const { return spec_.mips; }
     std::uint32_t samples() const { return spec_.samples; }
     VkImageAspectFlags aspect() const;
-    explicit operator bool() const { return image_ != VK_NULL_HANDLE; }
+    explicit operator bool() const { return static_cast<bool>(image_); }
 
     ImageUse use() const { return use_; }
     void set_use(ImageUse use) { use_ = use; }
@@ -58,9 +59,8 @@ class Image {
     void make_view(Device& device);
 
     Allocation memory_;
-    Owned<VkImage, destroy_image> owned_;
+    Owned<VkImage, destroy_image> image_;
     Owned<VkImageView, destroy_image_view> view_;
-    VkImage image_ = VK_NULL_HANDLE;
     ImageSpec spec_;
     ImageUse use_ = ImageUse::undefined;
 };

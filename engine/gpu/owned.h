@@ -12,6 +12,13 @@ class Owned {
  public:
     Owned() = default;
     Owned(const DeviceState& state, Handle handle) : handle_(handle), state_(&state) {}
+    /// A handle that someone else destroys.
+    static Owned borrow(Handle handle)
+    {
+        Owned borrowed;
+        borrowed.handle_ = handle;
+        return borrowed;
+    }
     Owned(Owned&& other) noexcept
         : handle_(std::exchange(other.handle_, Handle{})), state_(std::exchange(other.state_, nullptr))
     {}

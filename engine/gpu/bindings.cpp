@@ -1,0 +1,176 @@
+#include "engine/gpu/bindings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <list>
+
+#include "engine/base/error.h"
+#include "engine/gpu/device_state.h"
+
+namespace etalon::gpu {
+namespace {
+
+std::string_view name(VkDescriptorType type)
+{
+    switch (type) {
+        case VK_DESCRIPTOR_TYPE_SAMPLER:
+            return "a sampler";
+        case VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER:
+            return "an image with a sampler";
+        case VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE:
+            return "an image without sampler";
+        case VK_DESCRIPTOR_TYPE_STORAGE_IMAGE:
+            return "a storage image";
+        case VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER:
+        case VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER:
+            return "a texel view";
+        default:
+            return "a buffer";
+    }
+}
+
+/// Collects descriptor writes and what they point to; lists, because the writes keep addresses.
+class Writer {
+ public:
+    Writer(const DeviceState& state, VkDescriptorSet set) : state_(state), set_(set) {}
+
+    void add(const DeclaredBinding& declared, const Bind& bind)
+    {
+        VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                   .dstSet = set_,
+                                   .dstBinding = declared.binding,
+                                   .descriptorCount = declared.count,
+                                   .descriptorType = declared.type};
+        switch (declared.type) {
+            case VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER:
+            case VK_DESCRIPTOR_TYPE_STORAGE_BUFFER:
+                write.pBufferInfo = buffer_info(declared, bind);
+                break;
+            case VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER:
+            case VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER:
+                write.pTexelBufferView = texel_info(declared, bind);
+                break;
+            default:
+                write.pImageInfo = image_infos(declared, bind);
+                break;
+        }
+        writes_.push_back(write);
+    }
+
+    void flush() const
+    {
+        state_.vk.vkUpdateDescriptorSets(state_.device, static_cast<std::uint32_t>(writes_.size()), writes_.data(), 0,
+                                         nullptr);
+    }
+
+ private:
+    [[noreturn]] static void throw_wrong_kind(const DeclaredBinding& declared)
+    {
+        throw Error(Blame::input, fmt::format("binding {} ({}) wants {}{}, and was given something else",
+                                              declared.binding, declared.name, name(declared.type),
+                                              declared.count > 1 ? fmt::format(", {} times", declared.count) : ""));
+    }
+
+    const VkDescriptorBufferInfo* buffer_info(const DeclaredBinding& declared, const Bind& bind)
+    {
+        const auto* range = std::get_if<BufferRange>(&bind.what);
+        if (range == nullptr || range->buffer == nullptr || declared.count != 1) throw_wrong_kind(declared);
+        assume(range->offset < range->buffer->size());
+        const std::uint64_t size = range->size == VK_WHOLE_SIZE ? range->buffer->size() - range->offset : range->size;
+        const std::uint64_t most = declared.type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
+                                       ? state_.limits.uniform_buffer_range
+                                       : state_.limits.storage_buffer_range;
+        if (size > most)
+            throw Error(Blame::machine,
+                        fmt::format("binding {} ({}) needs {} bytes in one piece; this device binds at most {}",
+                                    declared.binding, declared.name, size, most),
+                        "use a smaller picture or scene");
+        return &buffers_.emplace_back(VkDescriptorBufferInfo{range->buffer->handle(), range->offset, size});
+    }
+
+    const VkBufferView* texel_info(const DeclaredBinding& declared, const Bind& bind)
+    {
+        const auto* view = std::get_if<const TexelView*>(&bind.what);
+        if (view == nullptr || (*view)->handle() == VK_NULL_HANDLE || declared.count != 1) throw_wrong_kind(declared);
+        return &views_.emplace_back((*view)->handle());
+    }
+
+    const VkDescriptorImageInfo* image_infos(const DeclaredBinding& declared, const Bind& bind)
+    {
+        std::vector<VkDescriptorImageInfo>& infos = images_.emplace_back();
+        if (const auto* sampler = std::get_if<const Sampler*>(&bind.what))
+            infos.push_back({.sampler = (*sampler)->handle()});
+        else if (const auto* image = std::get_if<ImageBinding>(&bind.what))
+            infos.push_back(image_info(declared, *image));
+        else if (const auto* list = std::get_if<std::vector<ImageBinding>>(&bind.what))
+            for (const ImageBinding& each : *list) infos.push_back(image_info(declared, each));
+        const bool samplers = std::holds_alternative<const Sampler*>(bind.what);
+        if (infos.empty() || infos.size() > declared.count || samplers != (declared.type == VK_DESCRIPTOR_TYPE_SAMPLER))
+            throw_wrong_kind(declared);
+        infos.resize(declared.count, infos.back());
+        return infos.data();
+    }
+
+    static VkDescriptorImageInfo image_info(const DeclaredBinding& declared, const ImageBinding& bind)
+    {
+        const bool sampled = declared.type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+        if (bind.image == nullptr || !*bind.image || sampled != (bind.sampler != nullptr)) throw_wrong_kind(declared);
+        return {.sampler = sampled ? bind.sampler->handle() : VK_NULL_HANDLE,
+                .imageView = bind.image->view(),
+                .imageLayout = declared.type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE
+                                   ? VK_IMAGE_LAYOUT_GENERAL
+                                   : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+    }
+
+    const DeviceState& state_;
+    VkDescriptorSet set_;
+    std::vector<VkWriteDescriptorSet> writes_;
+    std::list<VkDescriptorBufferInfo> buffers_;
+    std::list<VkBufferView> views_;
+    std::list<std::vector<VkDescriptorImageInfo>> images_;
+};
+
+}  // namespace
+
+void destroy_descriptor_pool(const DeviceState& state, VkDescriptorPool pool)
+{
+    state.vk.vkDestroyDescriptorPool(state.device, pool, nullptr);
+}
+
+Bindings::Bindings(Device& device, const Layout& layout, const std::vector<Bind>& binds, std::uint32_t set)
+    : index_(set)
+{
+    const DeviceState& state = device.state();
+    std::vector<VkDescriptorPoolSize> sizes;
+    for (const DeclaredBinding& declared : layout.bindings())
+        if (declared.set == set) sizes.push_back({declared.type, declared.count});
+    if (sizes.empty()) throw Error(Blame::input, fmt::format("the shaders declare no descriptor set {}", set));
+    const VkDescriptorPoolCreateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+                                          .maxSets = 1,
+                                          .poolSizeCount = static_cast<std::uint32_t>(sizes.size()),
+                                          .pPoolSizes = sizes.data()};
+    VkDescriptorPool pool = VK_NULL_HANDLE;
+    check(state.vk.vkCreateDescriptorPool(state.device, &info, nullptr, &pool), "vkCreateDescriptorPool");
+    pool_ = {state, pool};
+    const VkDescriptorSetLayout set_layout = layout.set(set);
+    const VkDescriptorSetAllocateInfo allocation{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+                                                 .descriptorPool = pool,
+                                                 .descriptorSetCount = 1,
+                                                 .pSetLayouts = &set_layout};
+    check(state.vk.vkAllocateDescriptorSets(state.device, &allocation, &set_), "vkAllocateDescriptorSets");
+
+    Writer writer(state, set_);
+    for (const DeclaredBinding& declared : layout.bindings()) {
+        if (declared.set != set) continue;
+        const auto bind = std::find_if(binds.begin(), binds.end(),
+                                       [&](const Bind& candidate) { return candidate.binding == declared.binding; });
+        if (bind == binds.end())
+            throw Error(Blame::input, fmt::format("nothing was given for set {}, binding {} ({}), which wants {}", set,
+                                                  declared.binding, declared.name, name(declared.type)));
+        writer.add(declared, *bind);
+    }
+    writer.flush();
+}
+
+}  // namespace etalon::gpu

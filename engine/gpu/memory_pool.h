@@ -1,0 +1,56 @@
+#pragma once
+// Inside engine/gpu only: arenas of device memory under one budget.
+#include <map>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "engine/gpu/device.h"
+#include "engine/gpu/memory.h"
+
+namespace etalon::gpu {
+
+/// One allocation of the driver's, handed out in pieces.
+class Arena {
+ public:
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+    std::uint64_t size = 0;
+    std::uint32_t type = 0;
+    bool linear = true;  ///< buffers and optimally tiled images never share one: bufferImageGranularity
+    std::byte* mapped = nullptr;
+    std::map<std::uint64_t, std::uint64_t> free;  ///< size by offset, never two adjacent
+    class MemoryPool* pool = nullptr;
+
+    /// First fit. False when there is no room.
+    bool take(std::uint64_t bytes, std::uint64_t alignment, std::uint64_t& offset);
+    void give_back(std::uint64_t offset, std::uint64_t bytes);
+    bool empty() const { return free.size() == 1 && free.begin()->second == size; }
+};
+
+class MemoryPool {
+ public:
+    MemoryPool(const DeviceState& state, std::uint64_t budget);
+    ~MemoryPool();
+    MemoryPool(const MemoryPool&) = delete;
+    MemoryPool& operator=(const MemoryPool&) = delete;
+
+    /// `linear`: for a buffer. `what` names the resource in the Error.
+    Allocation allocate(const VkMemoryRequirements& needs, MemoryKind kind, bool linear, std::string_view what);
+    void release(Arena& arena, std::uint64_t offset, std::uint64_t size);
+    MemoryUse use() const;
+    /// True where MemoryKind::device is mapped.
+    bool unified() const { return unified_; }
+
+ private:
+    std::uint32_t pick_type(std::uint32_t allowed, MemoryKind kind) const;
+    Arena& add_arena(std::uint64_t size, std::uint32_t type, bool linear, std::string_view what);
+
+    const DeviceState& state_;
+    VkPhysicalDeviceMemoryProperties properties_{};
+    bool unified_ = false;
+    mutable std::mutex mutex_;
+    std::vector<std::unique_ptr<Arena>> arenas_;
+    MemoryUse use_;
+};
+
+}  // namespace etalon::gpu
