@@ -12,18 +12,19 @@ h1 { font-size: 1.35rem; overflow-wrap: anywhere; } h2 { font-size: 1.1rem; marg
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
 th, td { padding: .25rem .7rem; text-align: left; border-bottom: 1px solid var(--line); vertical-align: top; }
 .scroll { overflow-x: auto; }
-.grid { display: grid; grid-template-columns: repeat(auto-fit, minmax(16rem, 1fr)); gap: 1rem; }
+.grid { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(22rem, 100%), 1fr)); gap: 1rem; }
 figure { margin: 0; } figure img { width: 100%; height: auto; image-rendering: pixelated; background: var(--soft); }
 figcaption { font-size: .9rem; }
 .good { color: var(--good); font-weight: 600; } .bad { color: var(--bad); font-weight: 600; }
 canvas { width: 100%; height: auto; image-rendering: pixelated; background: var(--soft); touch-action: none; cursor: crosshair; }
+.grid img { max-height: 80vh; object-fit: contain; }
 .controls { display: flex; flex-wrap: wrap; gap: .4rem 1.2rem; margin: .5rem 0; align-items: center; }
 #readout { min-height: 7em; } svg { background: var(--soft); } svg rect { fill: currentColor; }
 summary { cursor: pointer; }
 )css";
 
-/// Reads the JSON of #data: width, height, runs with `radiance` and `deviation` as PNG data URIs that hold
-/// shared-exponent values: 8-bit mantissas in the upper half, the exponent + 128 in red of the lower half.
+/// Reads the JSON of #data: width, height, exposure in EV, runs with `radiance` and `deviation` as PNG data URIs that
+/// hold shared-exponent values: 8-bit mantissas in the upper half, the exponent + 128 in red of the lower half.
 inline constexpr std::string_view kScript = R"js(
 "use strict";
 const data = JSON.parse(document.getElementById("data").textContent);
@@ -129,6 +130,8 @@ async function start() {
   }
   get("b").selectedIndex = Math.min(1, data.runs.length - 1);
   view.width = data.width; view.height = data.height;
+  view.style.maxWidth = `${80 * data.width / data.height}vh`;
+  get("exposure").valueAsNumber = data.exposure;
   for (const id of ["a", "b", "mode", "exposure", "wipe"]) get(id).addEventListener("input", paint);
   view.addEventListener("pointermove", event => aim(...from_event(event)));
   view.addEventListener("wheel", event => { event.preventDefault(); aim(...from_event(event)); zoom(event.deltaY < 0 ? 2 : 0.5); }, { passive: false });
@@ -156,7 +159,7 @@ inline constexpr std::string_view kInspector = R"html(
 <label>B (right) <select id="b"></select></label>
 <label>show <select id="mode"><option value="wipe">A | B</option><option value="difference">relative difference × 2^EV</option></select></label>
 <label>wipe <input id="wipe" type="range" min="0" max="100" value="50"></label>
-<label>exposure <input id="exposure" type="range" min="-10" max="10" step="0.5" value="0"></label>
+<label>exposure <input id="exposure" type="range" min="-20" max="20" step="0.5" value="0"></label>
 <output id="shown"></output>
 </div>
 <canvas id="view" tabindex="0" aria-label="Pictures A and B, side by side at the wipe. Arrow keys move the read-out, plus and minus zoom."></canvas>

@@ -234,8 +234,9 @@ std::string script_data(const Report& report, const std::vector<Film>& films)
         runs += "}";
     }
     return fmt::format(
-        "<script type=\"application/json\" id=\"data\">{{\"width\":{},\"height\":{},\"runs\":[{}]}}</script>\n",
-        films[0].width, films[0].height, runs);
+        "<script type=\"application/json\" "
+        "id=\"data\">{{\"width\":{},\"height\":{},\"exposure\":{:.6g},\"runs\":[{}]}}</script>\n",
+        films[0].width, films[0].height, std::isfinite(report.develop.exposure) ? report.develop.exposure : 0.0, runs);
 }
 
 int shrink_factor(const Report& report)
@@ -275,9 +276,9 @@ std::string report_html(const Report& report)
         "'unsafe-inline'; script-src 'unsafe-inline'\">\n";
     out += fmt::format("<title>{}: Etalon</title>\n<style>{}</style></head><body>\n", html_escape(report.scene),
                        page::kStyle);
-    out += fmt::format("<h1>{}: <span class=\"{}\">{}</span>{}</h1>\n", html_escape(report.scene),
-                       fine ? "good" : "bad", fine ? "no difference found beyond what is stated" : "differences found",
-                       report.interrupted ? " (interrupted)" : "");
+    out +=
+        fmt::format("<h1>{}: <span class=\"{}\">{}</span>{}</h1>\n", html_escape(report.scene), fine ? "good" : "bad",
+                    fine ? "no fault found" : "differences found", report.interrupted ? " (interrupted)" : "");
     if (!report.command.empty()) out += fmt::format("<p><code>{}</code></p>\n", html_escape(report.command));
     out += comparisons_table(report) + renderers_table(report);
     if (!films.empty()) {
