@@ -42,6 +42,7 @@ struct Features {
         instance.vk.vkGetPhysicalDeviceFeatures2(physical, &has);
         v13.dynamicRendering = VK_TRUE;
         v13.synchronization2 = VK_TRUE;
+        v13.maintenance4 = VK_TRUE;  // part of 1.3; SPIR-V 1.6 states workgroup sizes by constants, which it allows
         v12.timelineSemaphore = VK_TRUE;
         v12.bufferDeviceAddress = VK_TRUE;
         v12.scalarBlockLayout = VK_TRUE;
