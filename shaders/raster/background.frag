@@ -13,8 +13,7 @@ void main()
 {
     vec3 origin, direction;
     film_ray(gl_FragCoord.xy, origin, direction);
-    vec3 light = frame.background;
-    if (kEnvironment == kEnvironmentConstant) light = frame.environment_radiance;
+    vec3 light = frame.environment_radiance;
     if (kEnvironment == kEnvironmentMap) {
         const vec2 uv = equirect(to_map(direction, frame.environment_turn));
         light = frame.environment_scale * fetch_equirect(environment_map, uv, textureSize(environment_map, 0), 0);

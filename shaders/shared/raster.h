@@ -10,7 +10,6 @@ struct RasterFrame {
     mat3 world_from_camera;       // rotation alone
     vec3 irradiance[9];           // E(n) of (SH-33) in the map's frame, scaled; coefficients as engine/render/environment.h
     vec3 environment_radiance;    // of a constant environment, scaled
-    vec3 background;              // of Background::colour, nit
     vec2 environment_turn;        // cos, sin of the environment's rotation about +Y
     float environment_scale;
     vec2 film_half;               // half extents of the view at unit distance (perspective) or in metres (orthographic)
@@ -39,7 +38,7 @@ struct RasterSphere {
 
 ETALON_SHARED_END
 #ifdef __cplusplus
-static_assert(sizeof(etalon::shared::RasterFrame) == 64 + 36 + 108 + 24 + 8 + 4 + 8 + 8 + 8 + 8 + 4);
+static_assert(sizeof(etalon::shared::RasterFrame) == 64 + 36 + 108 + 12 + 8 + 4 + 8 + 8 + 8 + 8 + 4);
 static_assert(sizeof(etalon::shared::RasterDraw) == 48 + 36 + 12);
 static_assert(sizeof(etalon::shared::RasterSphere) == 24);
 #endif

@@ -1,0 +1,111 @@
+#pragma once
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/base/progress.h"
+#include "engine/gpu/commands.h"
+#include "engine/image/film.h"
+#include "engine/render/environment.h"
+#include "engine/render/raster_frame.h"
+#include "engine/render/raster_geometry.h"
+#include "engine/render/raster_pipelines.h"
+#include "engine/render/raster_textures.h"
+
+namespace etalon {
+
+/// What a stage of the rasterizer took. Work of the device by its own clock, the rest by the host's.
+struct StageTime {
+    std::string name;
+    double milliseconds = 0;
+};
+
+/// A posed scene on a device, ready to be drawn from any view: docs/shading.md §4. Geometry, textures, environment
+/// tables and pipelines are made once, as `required` says. `posed` (with its scene) must outlive it; posed.view is not
+/// used.
+class RasterScene {
+ public:
+    /// Throws Error(machine) when the device lacks memory or 4 samples of float colour, Error(input) when `required`
+    /// lacks a material's model.
+    RasterScene(gpu::Device& device, const PosedScene& posed, const Requirements& required,
+                const RenderSettings& settings, const Progress& progress = {});
+
+    /// Hands a picture of the scene to the device; what was drawn before is replaced. Its kind of camera (perspective
+    /// or orthographic) must be that of the posed scene. Waits for the draw before it, not for this one.
+    void draw(const View& view);
+    /// The picture drawn last: linear premultiplied radiance, RGBA float32, one sample a pixel, in use `sampled`.
+    gpu::Image& picture() { return targets_.resolved; }
+    /// Waits for the picture and reads it, with its AOVs where settings ask for them.
+    Film read();
+    /// Of construction, the last draw and the last read.
+    std::vector<StageTime> times() const;
+
+ private:
+    /// A mesh primitive in one place, or a sphere.
+    struct Item {
+        RasterShape shape = RasterShape::mesh;
+        std::uint32_t index = 0;  ///< of PosedScene::draws or spheres
+        Index material = 0;
+        AlphaMode mode = AlphaMode::opaque;
+        const gpu::GraphicsPipeline* color = nullptr;
+        const gpu::GraphicsPipeline* aovs = nullptr;  ///< null: not asked for
+        const gpu::Bindings* textures = nullptr;
+        bool culled = false;    ///< back faces are not drawn
+        bool mirrored = false;  ///< fronts are clockwise
+        dvec3 center{0};        ///< world, metres: what BLEND is sorted by (SH-32)
+    };
+    struct Targets {
+        gpu::Image color;  ///< multisampled; empty where one sample is drawn
+        gpu::Image resolved;
+        gpu::Image depth;
+        std::array<gpu::Image, kRasterAovTargets> aovs;  ///< empty unless asked for
+        gpu::Image aov_depth;
+    };
+
+    void add_items(const Progress& progress);
+    Item item_of(std::uint32_t draw);
+    Item item_of_sphere(std::uint32_t sphere);
+    void finish(Item& item, const RasterVariant& color, const std::optional<RasterVariant>& aovs);
+    const gpu::Bindings& texture_bindings(const gpu::Layout& layout, const Material& material,
+                                          const RasterVariant& variant);
+    void add_environment();
+    void bind_frame();
+    void resize(const View& view);
+    void write_frame(const View& view);
+    void draw_color(gpu::Commands& commands, const View& view);
+    void draw_aovs(gpu::Commands& commands, const View& view);
+    void draw_items(gpu::Commands& commands, const View& view, AlphaMode mode, RasterTarget target) const;
+    void draw_mesh(gpu::Commands& commands, const View& view, const Item& item) const;
+    void draw_sphere(gpu::Commands& commands, const View& view, const Item& item) const;
+    std::vector<const Item*> ordered(AlphaMode mode, const View& view) const;
+    bool draws_background() const { return background_ != nullptr; }
+    void read_aovs(Film& film);
+
+    gpu::Device& device_;
+    const PosedScene& posed_;
+    Requirements required_;
+    RenderSettings settings_;
+    RasterVariants variants_;
+    std::vector<StageTime> times_;
+    double read_milliseconds_ = 0;
+    RasterGeometry geometry_;
+    RasterTextures textures_;
+    RasterPipelines pipelines_;
+    std::optional<EnvironmentTables> tables_;  // of a map
+    gpu::Image atlas_;
+    gpu::Image environment_map_;
+    gpu::Buffer frame_;
+    gpu::Buffer materials_;
+    gpu::Buffer lights_;
+    std::vector<Item> items_;
+    std::map<std::array<Index, 5>, gpu::Bindings> texture_bindings_;  // by the textures read
+    const gpu::GraphicsPipeline* background_ = nullptr;               // null: cleared
+    gpu::Bindings background_map_;
+    std::map<RasterShape, gpu::Bindings> frame_bindings_;
+    Targets targets_;
+    std::optional<gpu::Commands> commands_;  // of the last draw
+};
+
+}  // namespace etalon
