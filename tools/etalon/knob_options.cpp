@@ -8,13 +8,6 @@
 namespace etalon::cli {
 namespace {
 
-std::string sentence(const Knob& knob)
-{
-    std::string text = fmt::format("{} ({}); less saves {}, and {}", knob.what, range_of(knob), knob.buys, knob.costs);
-    text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
-    return text;
-}
-
 std::vector<std::string> choices(const Knob& knob)
 {
     if (std::holds_alternative<Switch>(knob.type)) return {"on", "off"};
@@ -22,6 +15,14 @@ std::vector<std::string> choices(const Knob& knob)
     if (const auto* const choice = std::get_if<CountChoice>(&knob.type))
         for (std::size_t i = 0; i < choice->count; ++i) all.push_back(fmt::format("{}", choice->values[i]));
     return all;
+}
+
+std::string sentence(const Knob& knob)
+{
+    const std::string range = choices(knob).empty() ? fmt::format(", {}", range_of(knob)) : "";
+    std::string text = fmt::format("{}{} (buys: {}; costs: {})", knob.what, range, knob.buys, knob.costs);
+    text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+    return text;
 }
 
 }  // namespace

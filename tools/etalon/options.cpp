@@ -219,8 +219,8 @@ Command view_command()
     return {
         .name = "view",
         .summary = "Open a scene in a window",
-        .description = "Opens SCENE in a window: drag to orbit, drag with the right button to pan, scroll to zoom, Tab to switch between the rasterizer and the "
-                       "progressive path tracer, F to frame, Escape to close.",
+        .description = "Opens SCENE in a window, drawn by the rasterizer or by the progressive path tracer. Which keys and mouse moves there are is said "
+                       "on standard error; Ctrl-C closes it as well.",
         .argument = "SCENE",
         .least = 1,
         .most = 1,
