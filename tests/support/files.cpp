@@ -1,6 +1,5 @@
 #include "tests/support/files.h"
 
-#include <fmt/format.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
