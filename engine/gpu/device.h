@@ -35,6 +35,8 @@ struct DeviceOptions {
     std::string device;  ///< an index, or a part of the name (case ignored); empty: GPUs first, then the CPU
     std::optional<DeviceKind> kind;  ///< only this kind will do
     bool validate = false;           ///< core and synchronization validation; see Device::validation_messages
+    /// Also hears what validation says, until the device is gone; called by whichever thread makes the faulty call.
+    std::function<void(const std::string&)> on_message;
     std::optional<std::uint64_t> memory_budget;  ///< bytes; see Device::memory_budget
     /// To present: what the window system needs of the instance, and how it makes a surface. The Device owns the
     /// surface and is chosen so that it can present to it.

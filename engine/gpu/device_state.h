@@ -43,6 +43,7 @@ struct InstanceTable {
 struct MessageLog {
     mutable std::mutex mutex;
     std::vector<std::string> messages;
+    std::function<void(const std::string&)> heard;
 };
 
 /// An instance with its validation and the surface that it is to present to. On a machine without any driver `handle`

@@ -36,6 +36,7 @@ VkBool32 VKAPI_PTR keep_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugU
     auto& kept = *static_cast<MessageLog*>(log);
     const std::lock_guard lock(kept.mutex);
     kept.messages.emplace_back(data->pMessage);
+    if (kept.heard) kept.heard(kept.messages.back());
     return VK_FALSE;
 }
 
@@ -130,6 +131,7 @@ void check(VkResult result, std::string_view call)
 Instance::Instance(const DeviceOptions& options) : validating(options.validate)
 {
     load_loader();
+    log.heard = options.on_message;
     std::vector<const char*> enabled_layers;
     std::vector<const char*> extensions;
     for (const std::string& extension : options.instance_extensions) extensions.push_back(extension.c_str());
