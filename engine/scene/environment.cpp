@@ -1,6 +1,9 @@
 #include "engine/scene/environment.h"
 
+#include <algorithm>
+
 #include "engine/base/error.h"
+#include "engine/image/io.h"
 
 namespace etalon {
 
@@ -66,6 +69,19 @@ Environment resolve_environment(const SceneRoot& root, const PoseSettings& setti
     }
     out.rotation += settings.environment_rotation * kPi / 180;
     out.scale *= settings.environment_intensity;
+    return out;
+}
+
+Environment read_environment(const std::filesystem::path& path)
+{
+    Image picture = read_image(path);
+    replace_nonfinite(picture);
+    auto map = std::make_shared<Image>(picture.width, picture.height, 3);
+    for (int y = 0; y < picture.height; ++y)
+        for (int x = 0; x < picture.width; ++x)
+            for (int c = 0; c < 3; ++c) map->at(x, y, c) = std::max(picture.at(x, y, c), 0.0f);
+    Environment out;
+    out.map = std::move(map);
     return out;
 }
 

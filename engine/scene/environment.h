@@ -1,4 +1,5 @@
 #pragma once
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -11,5 +12,9 @@ namespace etalon {
 /// (`has_light` false), else black; then turned and scaled by the settings. A choice made for the user goes to `notes`.
 Environment resolve_environment(const SceneRoot& root, const PoseSettings& settings, bool has_light,
                                 std::vector<std::string>& notes);
+
+/// An equirectangular picture (EXR, HDR, PNG, JPEG, WebP) as an environment: alpha dropped, values that are not finite
+/// replaced (replace_nonfinite), negative ones 0. Error(input) as read_image.
+Environment read_environment(const std::filesystem::path& path);
 
 }  // namespace etalon

@@ -13,12 +13,13 @@ struct LoadOptions {
     bool strict = false;  ///< warnings become errors
 };
 
-/// Loads a .gltf or .glb file, or a built-in scene by name ("builtin:cornell"). External buffers and images are read from
-/// beneath the file's folder only. Throws Error(input) with file, JSON pointer and mend. Normals are filled (flat) and
-/// tangents computed (MikkTSpace) where a material needs them.
+/// Loads a .gltf or .glb file, or a built-in scene by name ("builtin:cornell"). External buffers and images are read
+/// from beneath the file's folder only. Throws Error(input) with file, JSON pointer and mend. Normals are filled (flat)
+/// and tangents computed (MikkTSpace) where a material needs them.
 Scene load_scene(const std::string& path_or_name, const LoadOptions& options = {});
 
-/// Loads glTF from memory (`.gltf` text or `.glb`, told apart by the magic); external URIs are resolved beneath `folder`.
+/// Loads glTF from memory (`.gltf` text or `.glb`, told apart by the magic); external URIs are resolved beneath
+/// `folder`.
 Scene parse_gltf(std::span<const std::byte> bytes, const std::filesystem::path& folder, const std::string& name,
                  const LoadOptions& options = {});
 

@@ -28,8 +28,8 @@ struct Draw {
 };
 
 struct PosedSphere {
-    dvec3 center{0};   ///< world, metres
-    double radius = 1; ///< > 0
+    dvec3 center{0};    ///< world, metres
+    double radius = 1;  ///< > 0
     Index material = 0;
     Index node = 0;
 };
@@ -44,34 +44,34 @@ struct PosedLight {
 struct PosedScene {
     const Scene* scene = nullptr;
     View view;
-    std::vector<Draw> draws;           ///< visible ones, in depth-first node order
+    std::vector<Draw> draws;  ///< visible ones, in depth-first node order
     std::vector<PosedSphere> spheres;
     std::vector<PosedLight> lights;
-    Environment environment;           ///< resolved: black when there is none
-    dvec3 bounds_min{0}, bounds_max{0};///< world box of draws and spheres
-    std::vector<std::string> notes;    ///< choices made for the user: "no camera: framed from …", "no light: studio"
+    Environment environment;             ///< resolved: black when there is none
+    dvec3 bounds_min{0}, bounds_max{0};  ///< world box of draws and spheres
+    std::vector<std::string> notes;  ///< choices made for the user: "no camera: framed from …", "no light: studio"
 
     const Primitive& primitive(const Draw& d) const { return scene->meshes[d.mesh].primitives[d.primitive]; }
     const Material& material(const Draw& d) const { return scene->materials[primitive(d).material]; }
 };
 
 struct Orbit {
-    double azimuth = 0;             ///< degrees about +Y from +Z
-    double elevation = 0;           ///< degrees above the horizon
-    std::optional<double> distance; ///< metres; framed when absent
-    std::optional<dvec3> target;    ///< world; centre of the bounds when absent
-    std::optional<double> yfov;     ///< degrees; 45 when absent
+    double azimuth = 0;              ///< degrees about +Y from +Z
+    double elevation = 0;            ///< degrees above the horizon
+    std::optional<double> distance;  ///< metres; framed when absent
+    std::optional<dvec3> target;     ///< world; centre of the bounds when absent
+    std::optional<double> yfov;      ///< degrees; 45 when absent
 };
 
 struct PoseSettings {
-    std::optional<Index> root;           ///< which glTF scene; the file's default when absent
-    std::optional<std::string> camera;   ///< name or index
-    std::optional<Orbit> orbit;          ///< instead of a camera
-    std::optional<ivec2> size;           ///< pixels; the scene's hint, else 1280x720
+    std::optional<Index> root;               ///< which glTF scene; the file's default when absent
+    std::optional<std::string> camera;       ///< name or index
+    std::optional<Orbit> orbit;              ///< instead of a camera
+    std::optional<ivec2> size;               ///< pixels; the scene's hint, else 1280x720
     std::optional<Environment> environment;  ///< replaces the scene's (its rotation and scale below still apply)
-    bool no_environment = false;         ///< black
-    double environment_rotation = 0;     ///< degrees, added
-    double environment_intensity = 1;    ///< multiplied
+    bool no_environment = false;             ///< black
+    double environment_rotation = 0;         ///< degrees, added
+    double environment_intensity = 1;        ///< multiplied
 };
 
 /// Flattens the node forest, picks or frames the camera, and adds the neutral studio environment where the scene has no

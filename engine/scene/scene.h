@@ -23,13 +23,13 @@ enum class Topology { points, lines, triangles };
 struct Primitive {
     Topology topology = Topology::triangles;
     std::vector<vec3> positions;
-    std::vector<vec3> normals;          ///< unit; computed flat when the file has none (then has_normals is false)
-    std::vector<vec4> tangents;         ///< xyz unit, w = ±1 the bitangent's sign; filled where a normal map needs them
-    std::array<std::vector<vec2>, 2> uv;///< TEXCOORD_0, TEXCOORD_1; v = 0 is the top row of the texture
-    std::vector<vec4> colors;           ///< COLOR_0, linear; multiplies base colour and alpha
-    std::vector<std::uint32_t> indices; ///< 1, 2 or 3 an element; every value < positions.size()
-    Index material = 0;                 ///< always a valid index: a default material is appended where needed
-    bool has_normals = false;           ///< the file gave normals; else they are the geometric ones of flat faces
+    std::vector<vec3> normals;   ///< unit; computed flat when the file has none (then has_normals is false)
+    std::vector<vec4> tangents;  ///< xyz unit, w = ±1 the bitangent's sign; filled where a normal map needs them
+    std::array<std::vector<vec2>, 2> uv;  ///< TEXCOORD_0, TEXCOORD_1; v = 0 is the top row of the texture
+    std::vector<vec4> colors;             ///< COLOR_0, linear; multiplies base colour and alpha
+    std::vector<std::uint32_t> indices;   ///< 1, 2 or 3 an element; every value < positions.size()
+    Index material = 0;                   ///< always a valid index: a default material is appended where needed
+    bool has_normals = false;             ///< the file gave normals; else they are the geometric ones of flat faces
 };
 
 struct Mesh {
@@ -74,17 +74,17 @@ struct Material {
     BsdfModel model = BsdfModel::metallic_roughness;
     dvec4 base_color{1};  ///< linear factor and alpha; the reflectance of lambert and mirror
     double metallic = 1;
-    double roughness = 1;           ///< perceptual
-    dvec3 emission{0};              ///< radiance, nit: factor × KHR_materials_emissive_strength
-    dvec3 eta{1.5};                 ///< rough_conductor: per channel; dielectrics: ior in x
-    dvec3 k{0};                     ///< rough_conductor: extinction per channel
-    double ggx_alpha = 0;           ///< rough_conductor, rough_dielectric
+    double roughness = 1;  ///< perceptual
+    dvec3 emission{0};     ///< radiance, nit: factor × KHR_materials_emissive_strength
+    dvec3 eta{1.5};        ///< rough_conductor: per channel; dielectrics: ior in x
+    dvec3 k{0};            ///< rough_conductor: extinction per channel
+    double ggx_alpha = 0;  ///< rough_conductor, rough_dielectric
     double normal_scale = 1;
     double occlusion_strength = 1;
     AlphaMode alpha_mode = AlphaMode::opaque;
     double alpha_cutoff = 0.5;
     bool double_sided = false;
-    bool emits_front_only = false;  ///< extras.etalon.emission "front": also where double_sided
+    bool emits_front_only = false;          ///< extras.etalon.emission "front": also where double_sided
     TextureUse base_color_texture;          ///< sRGB colour, linear alpha
     TextureUse metallic_roughness_texture;  ///< linear; G roughness, B metallic
     TextureUse normal_texture;              ///< linear, tangent space
@@ -113,10 +113,10 @@ struct ThinLens {
 struct Camera {
     std::string name;
     bool orthographic = false;
-    double yfov = kPi / 4;                ///< full vertical angle, radians
-    std::optional<double> aspect;         ///< of the file; the picture's own aspect is used for rendering
-    double xmag = 1, ymag = 1;            ///< half extents of an orthographic view, metres
-    double znear = 0.01;                  ///< metres; used by rasterizers alone
+    double yfov = kPi / 4;         ///< full vertical angle, radians
+    std::optional<double> aspect;  ///< of the file; the picture's own aspect is used for rendering
+    double xmag = 1, ymag = 1;     ///< half extents of an orthographic view, metres
+    double znear = 0.01;           ///< metres; used by rasterizers alone
     std::optional<ThinLens> lens;
 };
 
@@ -141,9 +141,9 @@ struct Node {
 /// Light from infinitely far. For world direction d: d' = R_y(-rotation) d, u = fract(atan2(d'.x, -d'.z) / 2π),
 /// v = acos(d'.y) / π, value = scale × (map ? bilinear(map, u wraps, v clamps) : radiance). docs/shading.md §5.
 struct Environment {
-    dvec3 radiance{0};      ///< nit, where there is no map
+    dvec3 radiance{0};                 ///< nit, where there is no map
     std::shared_ptr<const Image> map;  ///< equirectangular linear radiance, 3 channels; null: constant
-    double rotation = 0;    ///< radians about +Y
+    double rotation = 0;               ///< radians about +Y
     double scale = 1;
     bool is_black() const { return map ? scale == 0 : radiance == dvec3(0) || scale == 0; }
 };
@@ -163,7 +163,7 @@ struct SceneRoot {
 
 /// A glTF asset as a plain value; knows neither devices nor files nor time.
 struct Scene {
-    std::string name;              ///< file name without folder, or "builtin:…"
+    std::string name;  ///< file name without folder, or "builtin:…"
     std::vector<Mesh> meshes;
     std::vector<Material> materials;
     std::vector<Texture> textures;

@@ -1,0 +1,39 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/scene/gltf_import.h"
+
+namespace etalon::gltf {
+
+/// Elements of an accessor as floats: `components` numbers each, normalized integers mapped to [0, 1] or [-1, 1] by
+/// glTF's equations, sparse elements in place. All finite: Error(input) otherwise.
+struct Floats {
+    std::size_t count = 0;
+    std::size_t components = 0;
+    std::vector<float> values;
+
+    float at(std::size_t element, std::size_t component) const { return values[element * components + component]; }
+};
+
+/// Reads accessors that preflight has checked. Adds up what was asked for, and refuses to go on beyond 8 GiB: many
+/// primitives may share one accessor.
+class AccessorReader {
+ public:
+    explicit AccessorReader(const Source& source) : source_(source) {}
+
+    /// `pointer`: where the accessor is used, for messages. `components` lists how many each element may have.
+    Floats floats(int accessor, std::initializer_list<std::size_t> components, const std::string& pointer);
+    /// Unsigned scalars. The largest value of the type is refused: it would restart a primitive.
+    std::vector<std::uint32_t> indices(int accessor, const std::string& pointer);
+    std::size_t count(int accessor) const;
+
+ private:
+    void spend(std::size_t bytes, const std::string& pointer);
+
+    const Source& source_;
+    std::size_t spent_ = 0;
+};
+
+}  // namespace etalon::gltf

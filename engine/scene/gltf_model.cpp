@@ -1,0 +1,24 @@
+#include <fstream>  // tinygltf uses it without including it under TINYGLTF_NO_FS
+#include <nlohmann/json.hpp>
+
+#define TINYGLTF_IMPLEMENTATION
+#include "engine/scene/gltf_model.h"
+
+#include "engine/base/error.h"
+
+namespace etalon::gltf {
+
+Model parse_model(const std::string& json)
+{
+    Model model;
+    std::string error;
+    std::string warning;
+    tinygltf::TinyGLTF parser;
+    if (!parser.LoadASCIIFromString(&model, &error, &warning, json.c_str(), static_cast<unsigned int>(json.size()), "",
+                                    tinygltf::NO_REQUIRE))
+        throw Error(Blame::input, "the glTF document is malformed: " + error.substr(0, error.find('\n')),
+                    "export again");
+    return model;
+}
+
+}  // namespace etalon::gltf
