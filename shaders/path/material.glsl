@@ -1,0 +1,81 @@
+// Materials as packed by engine/render/material.h: 256 bytes, 16 texels each, of which only those required are read.
+#ifndef ETALON_PATH_MATERIAL_GLSL
+#define ETALON_PATH_MATERIAL_GLSL
+#include "shaders/path/textures.glsl"
+#include "shaders/shared/material.h"
+
+// Texels at which fields of MaterialRecord begin. Slot k of the textures starts at word 21 + 8 k: its u_row is the yzw of
+// texel 5 + 2 k, its v_row and texture index the next texel, its uv set the x of the one after.
+const uint kMaterialTexels = 16u;
+const uint kBaseColorSlot = 5u;
+const uint kMetallicRoughnessSlot = 7u;
+const uint kNormalSlot = 9u;
+const uint kEmissiveSlot = 13u;
+
+vec4 load_material(uint material, uint texel)
+{
+    return uintBitsToFloat(imageLoad(materials, int(kMaterialTexels * material + texel)));
+}
+
+// The texture of a slot at the given coordinates, or `otherwise` where the material has none.
+vec4 sample_slot(uint material, uint slot, vec4 uvs, bool srgb, vec4 otherwise)
+{
+    vec4 second = load_material(material, slot + 1u);
+    uint texture_index = floatBitsToUint(second.w);
+    bool second_set = floatBitsToUint(load_material(material, slot + 2u).x) == 1u;
+    vec2 uv = second_set ? uvs.zw : uvs.xy;
+    if (kTextureTransform) {
+        vec3 u_row = load_material(material, slot).yzw;
+        uv = vec2(dot(u_row.xy, uv) + u_row.z, dot(second.xy, uv) + second.z);
+    }
+    bool present = texture_index != kNoTexture;
+    vec4 texel = sample_texture(present ? texture_index : 0u, uv, srgb);
+    return present ? texel : otherwise;
+}
+
+// Base colour and alpha: factor, texture and vertex colour.
+vec4 base_color(uint material, vec4 uvs, vec4 color)
+{
+    vec4 value = load_material(material, 0u);
+    if (kBaseColorTexture) value *= sample_slot(material, kBaseColorSlot, uvs, true, vec4(1.0));
+    if (kColors) value *= color;
+    return value;
+}
+
+vec3 emission(uint material, vec4 uvs)
+{
+    vec3 value = load_material(material, 1u).xyz;
+    if (kEmissiveTexture) value *= sample_slot(material, kEmissiveSlot, uvs, true, vec4(1.0)).xyz;
+    return value;
+}
+
+uint material_flags(uint material) { return floatBitsToUint(load_material(material, 5u).x); }
+
+// How much of the surface is there: MASK all or nothing, BLEND its alpha, else all (SH-6).
+float coverage(uint material, float alpha)
+{
+    uint flags = material_flags(material);
+    if ((flags & kMaterialAlphaMask) != 0u) return alpha < load_material(material, 3u).w ? 0.0 : 1.0;
+    return (flags & kMaterialAlphaBlend) != 0u ? clamp(alpha, 0.0, 1.0) : 1.0;
+}
+
+vec4 uvs_at(uint primitive, vec3 weights)
+{
+    vec4 uvs = vec4(0.0);
+    if (kUv) uvs = interpolate(primitive, kUvAt, weights);
+    return uvs;
+}
+
+vec4 color_at(uint primitive, vec3 weights)
+{
+    vec4 color = vec4(1.0);
+    if (kColors) color = interpolate(primitive, kColorAt, weights);
+    return color;
+}
+
+float coverage_at(uint primitive, uint material, vec3 weights)
+{
+    return coverage(material, base_color(material, uvs_at(primitive, weights), color_at(primitive, weights)).w);
+}
+
+#endif

@@ -1,0 +1,73 @@
+// Queues and counters between the kernels of one wave.
+#ifndef ETALON_PATH_QUEUES_GLSL
+#define ETALON_PATH_QUEUES_GLSL
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_shuffle : require
+#include "shaders/path/scene_data.glsl"
+
+layout(set = 0, binding = kBindPathsIn, rgba32ui) readonly uniform uimageBuffer paths_in;
+layout(set = 0, binding = kBindHits, rgba32ui) readonly uniform uimageBuffer hits_in;
+layout(set = 0, binding = kBindShadows, rgba32ui) readonly uniform uimageBuffer shadows_in;
+layout(set = 0, binding = kBindPathsOut, std430) writeonly buffer PathsOut { vec4 paths_out[]; };
+layout(set = 0, binding = kBindHitsOut, std430) writeonly buffer HitsOut { vec4 hits_out[]; };
+layout(set = 0, binding = kBindShadowsOut, std430) writeonly buffer ShadowsOut { vec4 shadows_out[]; };
+layout(set = 0, binding = kBindRadiance, std430) buffer Radiance { vec4 radiance[]; };
+layout(set = 0, binding = kBindCounters, std430) buffer Counters { uint counters[]; };
+layout(set = 0, binding = kBindRetries, std430) buffer Retries { uint retries[]; };
+
+// A path on its way: the ray of its current segment, what it carries, and where its light goes.
+struct PathState {
+    vec3 origin;
+    uint self;        // the primitive it leaves, which it cannot meet again; kNoPrimitive if it can
+    vec3 direction;   // unit
+    uint slot;        // of the radiance, relative to the pass
+    vec3 throughput;
+    float pdf;        // density of the direction over solid angle; negative: no light sampling competes with it
+};
+
+PathState load_path(uint index)
+{
+    uvec4 a = imageLoad(paths_in, int(3u * index));
+    uvec4 b = imageLoad(paths_in, int(3u * index + 1u));
+    vec4 c = uintBitsToFloat(imageLoad(paths_in, int(3u * index + 2u)));
+    return PathState(uintBitsToFloat(a.xyz), a.w, uintBitsToFloat(b.xyz), b.w, c.xyz, c.w);
+}
+
+void store_path(uint index, PathState path)
+{
+    paths_out[3u * index] = vec4(path.origin, uintBitsToFloat(path.self));
+    paths_out[3u * index + 1u] = vec4(path.direction, uintBitsToFloat(path.slot));
+    paths_out[3u * index + 2u] = vec4(path.throughput, path.pdf);
+}
+
+uint counter_at(uint iteration, uint which) { return kCountersPerIteration * iteration + which; }
+
+// Which pixel of the band, and which sample of the pass, a slot is: slot = sample * pixel_count + pixel.
+void split_slot(uint slot, out uint pixel, out uint sample_in_pass)
+{
+    // A float quotient is off by one at most below 2^24; integer division is a scalar loop on lavapipe.
+    uint guess = uint(float(slot) / float(push.pixel_count));
+    int rest = int(slot) - int(guess * push.pixel_count);
+    sample_in_pass = rest < 0 ? guess - 1u : (rest >= int(push.pixel_count) ? guess + 1u : guess);
+    pixel = slot - sample_in_pass * push.pixel_count;
+}
+
+uint picture_pixel(uint pixel) { return push.first_pixel + pixel; }
+
+// One place in a queue for every invocation that wants one; one atomic a subgroup. All invocations must call it.
+uint append(uint counter, bool wanted)
+{
+    uint lane = gl_SubgroupInvocationID;
+    uint before = wanted ? 1u : 0u;
+    for (uint i = 0u; i < kSubgroupLog2; ++i) {
+        uint step_size = 1u << i;
+        uint other = subgroupShuffle(before, (lane - step_size) & (gl_SubgroupSize - 1u));
+        before += lane >= step_size ? other : 0u;
+    }
+    uint total = subgroupShuffle(before, gl_SubgroupSize - 1u);
+    uint base = 0u;
+    if (lane == 0u && total > 0u) base = atomicAdd(counters[counter], total);
+    return subgroupShuffle(base, 0u) + before - 1u;
+}
+
+#endif

@@ -1,0 +1,165 @@
+// What happens where a path's segment ends: light is collected, a light is sampled, and the path goes on, each queue filled
+// anew (docs/shading.md §3).
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/path/queues.glsl"
+#include "shaders/path/lights.glsl"
+#include "shaders/lib/bsdf.glsl"
+
+layout(local_size_x = kPathWorkgroup) in;
+
+// Segments after which Russian roulette begins: the first ones carry most of the picture.
+const uint kRouletteAfter = 2u;
+
+// Light collected at the end of a segment, and whether the scene covers it.
+struct Collected {
+    vec3 light;
+    float alpha;
+};
+
+Collected leave_scene(PathState path, bool camera_ray)
+{
+    if (camera_ray && frame.background_mode == kBackgroundTransparent) return Collected(vec3(0.0), 0.0);
+    if (camera_ray && frame.background_mode == kBackgroundColour) return Collected(frame.background, 1.0);
+    if (!kSky) return Collected(vec3(0.0), 1.0);
+    float pdf;
+    vec3 value = eval_sky(path.direction, pdf);
+    float weight = 1.0;
+    if (samples_sky() && path.pdf >= 0.0) weight = power_heuristic(path.pdf, pdf / float(frame.strategy_count));
+    return Collected(path.throughput * value * weight, 1.0);
+}
+
+vec3 collect_emission(PathState path, Surface s, uint primitive, float t)
+{
+    if (!s.front && (s.flags & kPrimitiveEmitsBack) == 0u) return vec3(0.0);
+    float weight = 1.0;
+    if (path.pdf >= 0.0) weight = power_heuristic(path.pdf, emitter_pdf(primitive, s, path.origin, path.direction, t));
+    return path.throughput * emission(s.material, s.uvs) * weight;
+}
+
+// The BSDF of the surface (docs/shading.md §2); `base` is base colour or reflectance.
+Bsdf make_bsdf(Surface s, vec3 base)
+{
+    vec4 emission_metallic = load_material(s.material, 1u);
+    vec4 eta_roughness = load_material(s.material, 2u);
+    vec4 k_cutoff = load_material(s.material, 3u);
+    vec4 scalars = load_material(s.material, 4u);  // normal scale, occlusion strength, GGX alpha, model
+    Bsdf bsdf;
+    bsdf.model = floatBitsToUint(scalars.w);
+    bsdf.diffuse = base;
+    bsdf.f0 = vec3(0.0);
+    bsdf.alpha = max(scalars.z, 1e-4);
+    bsdf.eta = eta_roughness.xyz;
+    bsdf.k = k_cutoff.xyz;
+    bsdf.excess = s.front ? eta_roughness.x - 1.0 : (1.0 - eta_roughness.x) / eta_roughness.x;
+    if (kMetallicRoughness && bsdf.model == kModelMetallicRoughness) {
+        float metallic = emission_metallic.w;
+        float roughness = eta_roughness.w;
+        if (kMetallicRoughnessTexture) {
+            vec4 texel = sample_slot(s.material, kMetallicRoughnessSlot, s.uvs, false, vec4(1.0));
+            metallic *= texel.z;
+            roughness *= texel.y;
+        }
+        bsdf.diffuse = base * (1.0 - metallic);
+        bsdf.f0 = 0.04 + metallic * (base - 0.04);
+        bsdf.alpha = max(roughness * roughness, 1e-3);
+    }
+    return bsdf;
+}
+
+// The value that a reflecting direction must not have through the surface, or a transmitted one in front of it.
+bool is_consistent(Surface s, vec3 wi, float local_z) { return (dot(s.ng, wi) > 0.0) == (local_z > 0.0); }
+
+void main()
+{
+    uint index = gl_GlobalInvocationID.x;
+    uint count = counters[counter_at(push.iteration, kCountPaths)];
+    bool here = index < count;
+    index = min(index, count - 1u);
+    PathState path = load_path(index);
+    uvec4 found = imageLoad(hits_in, int(index));
+    float t = uintBitsToFloat(found.x);
+    uint primitive = found.y;
+    bool hit = primitive != kNoPrimitive;
+    bool camera_ray = push.iteration == 0u;
+    bool last = push.iteration + 1u >= frame.max_depth;
+
+    uint pixel;
+    uint sample_in_pass;
+    split_slot(path.slot, pixel, sample_in_pass);
+    uint id = picture_pixel(pixel);
+    uint sample_index = push.first_sample + sample_in_pass;
+
+    vec3 wo = -path.direction;
+    Surface s = make_surface(hit ? primitive : 0u, uintBitsToFloat(found.z), uintBitsToFloat(found.w),
+                             path.origin + t * path.direction, wo);
+    vec4 base = base_color(s.material, s.uvs, s.color);
+    Bsdf bsdf = make_bsdf(s, base.xyz);
+    Frame local = make_frame(s.n);
+    vec3 wo_local = to_local(local, wo);
+    wo_local.z = max(wo_local.z, 1e-7);
+
+    bool unlit = kUnlit && bsdf.model == kModelUnlit;
+    bool black = !s.front && (material_flags(s.material) & kMaterialBlackBack) != 0u;
+    bool scatters = here && hit && !unlit && !black && is_finite(t);
+
+    Collected collected = Collected(vec3(0.0), 1.0);
+    if (!hit) collected = leave_scene(path, camera_ray);
+    if (kEmission && hit) collected.light = collect_emission(path, s, primitive, t);
+    if (unlit && hit) collected.light = path.throughput * base.xyz;
+    // A ray that the traversal gave up: the sample is lost and counted, not guessed.
+    if (!is_finite(t)) collected.light = vec3(t);
+
+    // Direct light.
+    PathState shadow = path;
+    bool casts = false;
+    if (!last && scatters && !is_delta(bsdf)) {
+        LightSample light = sample_light(s.position, random_bits(id, sample_index, 2u * push.iteration + 3u, frame.seed));
+        vec3 wi_local = to_local(local, light.wi);
+        float pdf;
+        vec3 value = eval_bsdf(bsdf, wo_local, wi_local, pdf);
+        value *= path.throughput * light.value * (light.pdf > 0.0 ? power_heuristic(light.pdf, pdf) : 1.0);
+        casts = max_component(value) > 0.0 && is_consistent(s, light.wi, wi_local.z);
+        shadow.origin = leave(s, light.wi);
+        shadow.self = self_of(s, primitive, light.wi);
+        // The whole way to the light is 1: the ray stops just short of it.
+        shadow.direction = light.infinite ? light.wi : light.target - shadow.origin;
+        shadow.pdf = light.infinite ? kMaxFloat : 1.0 - 1e-6;
+        shadow.throughput = value;
+    }
+    uint place = append(counter_at(push.iteration, kCountShadows), casts);
+    if (casts) {
+        shadows_out[3u * place] = vec4(shadow.origin, uintBitsToFloat(shadow.self));
+        shadows_out[3u * place + 1u] = vec4(shadow.direction, shadow.pdf);
+        shadows_out[3u * place + 2u] = vec4(shadow.throughput, uintBitsToFloat(path.slot));
+    }
+
+    // The next segment.
+    bool goes_on = false;
+    PathState next = path;
+    if (scatters) {
+        uvec4 bits = random_bits(id, sample_index, 2u * push.iteration + 2u, frame.seed);
+        BsdfSample drawn = sample_bsdf(bsdf, wo_local, vec3(unit_float(bits.x), unit_float(bits.y), unit_float(bits.z)));
+        next.direction = robust_normalize(to_world(local, drawn.wi));
+        next.throughput = path.throughput * drawn.weight;
+        next.pdf = drawn.pdf > 0.0 ? drawn.pdf : -1.0;
+        next.origin = leave(s, next.direction);
+        next.self = self_of(s, primitive, next.direction);
+        float carried = max_component(next.throughput);
+        goes_on = carried > 0.0 && is_consistent(s, next.direction, drawn.wi.z);
+        if (frame.roulette != 0u && push.iteration >= kRouletteAfter && !last) {
+            float survival = clamp(carried, 0.05, 1.0);  // (MC-4)
+            goes_on = goes_on && unit_float(bits.w) < survival;
+            next.throughput /= survival;
+        }
+    }
+    place = append(counter_at(push.iteration + 1u, kCountPaths), goes_on && !last);
+    if (goes_on && !last) store_path(place, next);
+
+    if (here) {
+        float truncated = last && goes_on ? 2.0 : 0.0;
+        vec4 before = camera_ray ? vec4(0.0, 0.0, 0.0, collected.alpha) : radiance[path.slot];
+        radiance[path.slot] = before + vec4(collected.light, truncated);
+    }
+}

@@ -1,0 +1,183 @@
+// Finds what rays meet, for software Vulkan on SIMD units: each lane keeps taking rays (persistent), the nearest child first
+// on a stack held in registers, shifted rather than indexed. Loops end by votes, so that lanes that wait are few. A ray that
+// would overflow the stack, and rays left when the lane has made its share of steps, go to the exact kernel: lavapipe ends
+// every loop of an invocation after 65535 iterations, without a word.
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/path/trace_io.glsl"
+
+layout(local_size_x = kPathWorkgroup) in;
+
+layout(constant_id = kSpecStack) const int kStack = 24;
+layout(constant_id = kSpecRaysPerLane) const uint kRaysPerLane = 32u;
+
+// Steps of a lane after which it takes no more rays: each is one turn of an inner loop, and of the two loops around it.
+const uint kMaxSteps = 20000u;
+// A loop goes on while more lanes than this are in it (measured on lavapipe with 8 lanes: docs/testing.md).
+const int kFewAtNodes = 2;
+const int kFewAtLeaves = 1;
+const int kFewToRefill = 1;
+
+int subgroup_sum(int x)
+{
+    uint lane = gl_SubgroupInvocationID;
+    for (uint i = 0u; i < kSubgroupLog2; ++i) x += subgroupShuffle(x, lane ^ (1u << i));
+    return x;
+}
+
+void order(inout int key_a, inout int ref_a, inout int key_b, inout int ref_b)
+{
+    bool swap = key_b < key_a;
+    int key = swap ? key_b : key_a;
+    int reference = swap ? ref_b : ref_a;
+    key_b = swap ? key_a : key_b;
+    ref_b = swap ? ref_a : ref_b;
+    key_a = key;
+    ref_a = reference;
+}
+
+int stack[kStack];
+bool overflowed = false;
+
+// Leaves the first `count` (0 … 3) places free, or takes the top away.
+void shift_stack(int count, bool pop)
+{
+    bool odd = (count & 1) != 0;
+    bool two = count >= 2;
+    int last = stack[kStack - 1];
+    int above_last = stack[kStack - 2];
+    int third_last = stack[kStack - 3];
+    overflowed = overflowed || (count >= 1 && last != kDone) || (two && above_last != kDone) || (count == 3 && third_last != kDone);
+    int previous = kDone;
+    for (int i = 0; i < kStack; ++i) {
+        int current = stack[i];
+        int next = i + 1 < kStack ? stack[i + 1] : kDone;
+        stack[i] = odd ? previous : (pop ? next : current);
+        previous = current;
+    }
+    for (int i = kStack - 1; i >= 2; --i) stack[i] = two ? stack[i - 2] : stack[i];
+}
+
+// One node: its children that are met, the nearest next, the others onto the stack. Lanes that are not at a node do nothing.
+int visit_node(Ray ray, int node, float t_max)
+{
+    bool here = node >= 0;
+    int first = 4 * max(node, 0);
+    uvec4 c0 = imageLoad(nodes, first);
+    uvec4 c1 = imageLoad(nodes, first + 1);
+    uvec4 c2 = imageLoad(nodes, first + 2);
+    uvec4 c3 = imageLoad(nodes, first + 3);
+    int limit = floatBitsToInt(t_max);
+    int k0 = child_key(c0, ray, limit), k1 = child_key(c1, ray, limit);
+    int k2 = child_key(c2, ray, limit), k3 = child_key(c3, ray, limit);
+    int r0 = int(c0.w), r1 = int(c1.w), r2 = int(c2.w), r3 = int(c3.w);
+    order(k0, r0, k1, r1);
+    order(k2, r2, k3, r3);
+    order(k0, r0, k2, r2);
+    order(k1, r1, k3, r3);
+    order(k1, r1, k2, r2);
+    bool met1 = here && k1 < kMissed;
+    bool met2 = here && k2 < kMissed;
+    bool met3 = here && k3 < kMissed;
+    bool pop = here && k0 == kMissed;
+    int top = stack[0];
+    shift_stack((met1 ? 1 : 0) + (met2 ? 1 : 0) + (met3 ? 1 : 0), pop);
+    stack[0] = met1 ? r1 : stack[0];
+    stack[1] = met2 ? r2 : stack[1];
+    stack[2] = met3 ? r3 : stack[2];
+    return here ? (pop ? top : r0) : node;
+}
+
+// One primitive of the leaf that a lane is at.
+int visit_leaf(Ray ray, int node, inout Hit hit)
+{
+    bool here = node < 0 && node != kDone;
+    uint leaf = here ? uint(~node) : 0u;
+    Hit candidate = hit;
+    bool met = meet(ray, leaf >> 4, candidate) && here && (leaf & 15u) != 0u;
+    hit.t = met ? candidate.t : hit.t;
+    hit.primitive = met ? candidate.primitive : hit.primitive;
+    hit.u = met ? candidate.u : hit.u;
+    hit.v = met ? candidate.v : hit.v;
+    bool more = (leaf & 15u) > 1u;
+    bool pop = here && !more;
+    int top = stack[0];
+    shift_stack(0, pop);
+    int next = here ? (more ? ~int(leaf + 15u) : top) : node;
+    return kShadow && met ? kDone : next;
+}
+
+void main()
+{
+    uint count = ray_count();
+    uint lanes = gl_SubgroupSize;
+    uint group = gl_WorkGroupID.x * gl_NumSubgroups + gl_SubgroupID;
+    uint index = group * lanes * kRaysPerLane + gl_SubgroupInvocationID;  // of the ray to be taken next
+    uint taken = 0u;     // rays taken so far
+    uint current = 0u;   // index of the ray at hand
+    bool busy = false;   // there is one
+    int node = kDone;
+    Hit hit = Hit(0.0, kNoPrimitive, 0.0, 0.0);
+    float t_max;
+    Ray ray = load_ray(min(index, count - 1u), t_max);
+    for (int i = 0; i < kStack; ++i) stack[i] = kDone;
+
+    uint steps = 0u;
+    for (;;) {
+        bool finished = node == kDone;
+        if (finished && busy) {
+            if (overflowed) {
+                retry(current);
+            } else {
+                store_result(current, hit);
+            }
+        }
+        bool take = finished && taken < kRaysPerLane && index < count && steps < kMaxSteps;
+        busy = finished ? take : busy;
+        float next_t_max;
+        Ray next = load_ray(min(index, count - 1u), next_t_max);
+        if (take) {
+            ray = next;
+            hit = Hit(next_t_max, kNoPrimitive, 0.0, 0.0);
+            current = index;
+            index += lanes;
+            ++taken;
+            node = 0;
+            overflowed = false;
+            for (int i = 0; i < kStack; ++i) stack[i] = kDone;
+        }
+        if (subgroup_sum(busy ? 1 : 0) == 0) break;
+
+        bool has_more = taken < kRaysPerLane && index < count;
+        for (;;) {
+            do {
+                node = visit_node(ray, node, hit.t);
+                ++steps;
+            } while (subgroup_sum(node >= 0 ? 1 : 0) > kFewAtNodes && steps < kMaxSteps);
+            do {
+                node = visit_leaf(ray, node, hit);
+                ++steps;
+            } while (subgroup_sum(node < 0 && node != kDone ? 1 : 0) > kFewAtLeaves && steps < kMaxSteps);
+            // Low half: lanes that could take a new ray; high half: lanes at work.
+            int state = subgroup_sum(node == kDone ? (has_more ? 1 : 0) : 0x10000);
+            if ((state & 0xffff) > kFewToRefill - 1 || (state >> 16) == 0 || steps >= kMaxSteps) break;
+        }
+        if (steps >= kMaxSteps) break;
+    }
+
+    // Out of steps: what is not done is done elsewhere. `steps` is the same in all lanes.
+    if (steps >= kMaxSteps) {
+        if (busy) {
+            if (node == kDone && !overflowed) {
+                store_result(current, hit);
+            } else {
+                retry(current);
+            }
+        }
+        for (; taken < kRaysPerLane && index < count; ++taken) {
+            retry(index);
+            index += lanes;
+        }
+    }
+}

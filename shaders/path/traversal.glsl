@@ -1,0 +1,99 @@
+// One ray against the BVH: what both trace kernels share.
+#ifndef ETALON_PATH_TRAVERSAL_GLSL
+#define ETALON_PATH_TRAVERSAL_GLSL
+#include "shaders/path/material.glsl"
+#include "shaders/lib/sphere.glsl"
+#include "shaders/lib/triangle.glsl"
+#include "shaders/shared/rng.h"
+
+layout(constant_id = kSpecShadow) const bool kShadow = false;
+layout(constant_id = kSpecBlendSolid) const bool kBlendSolid = false;
+
+// A ray that is done, as a node reference; and the key of a child that is missed: just above +infinity.
+const int kDone = int(0x80000000u);
+const int kMissed = 0x7f800001;
+
+struct Ray {
+    RayFrame frame;
+    vec3 direction;
+    vec3 inverse;    // on the BVH's grid: t = q * inverse - shifted
+    vec3 shifted;
+    uint self;
+    uint alpha_key;  // of the random numbers that decide about partly covered surfaces
+};
+
+Ray make_ray(vec3 origin, vec3 direction, uint self, uint alpha_key)
+{
+    vec3 d = direction * frame.grid_scale;
+    // Zero components get a tiny value, so that nothing becomes 0 * Inf (G19); on the grid directions are never that small.
+    const float tiny = 1e-18;
+    d = vec3(abs(d.x) < tiny ? tiny : d.x, abs(d.y) < tiny ? tiny : d.y, abs(d.z) < tiny ? tiny : d.z);
+    vec3 inverse = 1.0 / d;
+    return Ray(make_ray_frame(origin, direction), direction, inverse, (origin - frame.grid_base) * frame.grid_scale * inverse,
+               self, alpha_key);
+}
+
+// Entry distance into a child as float bits, or kMissed. Distances are compared as signed integers: the same order for
+// values that are not negative, and without the special cases of float min and max.
+int child_key(uvec4 child, Ray ray, int t_max)
+{
+    vec3 low = vec3(int(child.x & 0xffffu), int(child.x >> 16), int(child.y & 0xffffu));
+    vec3 high = vec3(int(child.y >> 16), int(child.z & 0xffffu), int(child.z >> 16));
+    ivec3 a = floatBitsToInt(low * ray.inverse - ray.shifted);
+    ivec3 b = floatBitsToInt(high * ray.inverse - ray.shifted);
+    int t_near = max(max(min(a.x, b.x), min(a.y, b.y)), max(min(a.z, b.z), 0));
+    int t_far = min(min(max(a.x, b.x), max(a.y, b.y)), min(max(a.z, b.z), t_max));
+    return t_near <= t_far ? t_near : kMissed;
+}
+
+struct Hit {
+    float t;
+    uint primitive;
+    float u;
+    float v;
+};
+
+// Is a partly covered surface there for this ray? Decided by a number of the ray and the primitive alone, so that the order
+// of traversal does not matter (SH-6).
+bool is_there(Ray ray, uint primitive, uint flags, float u, float v)
+{
+    float covered = coverage_at(primitive, flags & kPrimitiveMaterial, vec3(1.0 - u - v, u, v));
+    if (kBlendSolid) return covered > 0.0;
+    return unit_float(pcg4d(uvec4(ray.alpha_key, primitive, frame.seed, 0x5eed0a1fu)).x) < covered;
+}
+
+// Tests one primitive; `hit` is replaced where it is met closer.
+bool meet(Ray ray, uint primitive, inout Hit hit)
+{
+    PrimitiveData data = load_primitive(primitive);
+    bool met = false;
+    bool front = true;
+    float t = 0.0;
+    vec2 uv = vec2(0.0);
+    if (kTriangles) {
+        TriangleHit triangle = intersect_triangle(ray.frame, data.p0, data.p1, data.p2);
+        met = triangle.hit && primitive != ray.self;
+        front = triangle.front;
+        t = triangle.t;
+        uv = vec2(triangle.u, triangle.v);
+    }
+    bool culled = (data.flags & kPrimitiveCulled) != 0u;
+    met = met && t > 0.0 && !(culled && !front);
+    if (kSpheres && (data.flags & kPrimitiveSphere) != 0u) {
+        vec2 both;
+        bool crosses = intersect_sphere(ray.frame.origin, ray.direction, data.p0, data.p1.x, both);
+        bool enters = both.x > 0.0;
+        t = enters ? both.x : both.y;
+        met = crosses && t > 0.0 && !(culled && !enters) && primitive != ray.self;
+        uv = vec2(0.0);
+    }
+    met = met && t < hit.t;
+    if (kAlpha && met && (data.flags & kPrimitiveAlpha) != 0u) met = is_there(ray, primitive, data.flags, uv.x, uv.y);
+    hit.t = met ? t : hit.t;
+    hit.primitive = met ? primitive : hit.primitive;
+    hit.u = met ? uv.x : hit.u;
+    hit.v = met ? uv.y : hit.v;
+    return met;
+}
+
+#endif
