@@ -405,7 +405,7 @@ void Commands::begin_region(const std::string& region)
         VkQueryPool pool = VK_NULL_HANDLE;
         check(state_->vk.vkCreateQueryPool(state_->device, &info, nullptr, &pool), "vkCreateQueryPool");
         queries_ = {*state_, pool};
-        state_->vk.vkCmdResetQueryPool(buffer_, pool, 0, 2 * kMaxRegions);
+        state_->vk.vkResetQueryPool(state_->device, pool, 0, 2 * kMaxRegions);
     }
     const auto index = static_cast<std::uint32_t>(regions_.size());
     regions_.push_back(region);
@@ -455,6 +455,10 @@ Ticket Commands::submit()
 Ticket Commands::submit(VkSemaphore wait, VkSemaphore signal)
 {
     end();
+    if (queries_ && last_ != 0) {  // again: the stamps of the last time must be done with before they are reset
+        this->wait();
+        state_->vk.vkResetQueryPool(state_->device, queries_.get(), 0, 2 * kMaxRegions);
+    }
     const auto semaphore = [](VkSemaphore handle, std::uint64_t value) {
         return VkSemaphoreSubmitInfo{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO,
                                      .semaphore = handle,

@@ -99,8 +99,8 @@ class Commands {
     void draw_indexed(std::uint32_t indices, std::uint32_t instances = 1, std::uint32_t first_index = 0,
                       std::int32_t vertex_offset = 0, std::uint32_t first_instance = 0);
 
-    /// Times what is recorded between the two; regions may nest. At most kMaxRegions a list. No-ops where the device
-    /// has no timestamps. `name` also labels the work in debuggers.
+    /// Times what is recorded between the two; regions may nest. At most kMaxRegions a list. Where the device has no
+    /// timestamps, nothing is timed. Submitting a list with regions again waits for its last run.
     void begin_region(const std::string& name);
     void end_region();
     static constexpr std::uint32_t kMaxRegions = 128;

@@ -46,6 +46,7 @@ struct Features {
         v12.timelineSemaphore = VK_TRUE;
         v12.bufferDeviceAddress = VK_TRUE;
         v12.scalarBlockLayout = VK_TRUE;
+        v12.hostQueryReset = VK_TRUE;  // part of 1.2
         for (const auto feature : {&VkPhysicalDeviceFeatures::samplerAnisotropy,
                                    &VkPhysicalDeviceFeatures::shaderFloat64,
                                    &VkPhysicalDeviceFeatures::shaderInt64,
