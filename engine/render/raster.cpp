@@ -125,7 +125,11 @@ RasterScene::RasterScene(gpu::Device& device, const PosedScene& posed, const Req
       materials_(gpu::make_buffer(device, pack_materials(*posed.scene), "materials")),
       lights_(device, {.size = posed.lights.size() * sizeof(shared::LightRecord),
                        .memory = gpu::MemoryKind::upload,
-                       .name = "lights"})
+                       .name = "lights"}),
+      emitters_(required.has(Feature::emission) ? find_emitters(posed) : std::vector<RasterEmitter>{}),
+      emitter_records_(device, {.size = emitters_.size() * sizeof(shared::EmitterRecord),
+                                .memory = gpu::MemoryKind::upload,
+                                .name = "emitters"})
 {
     if (variants_.samples() == 4 && (device.limits().samples >> 2 & 1) == 0)
         throw Error(Blame::machine, fmt::format("{} cannot draw 4 samples a pixel in float32", device.name()),
@@ -221,8 +225,9 @@ void RasterScene::bind_frame()
 {
     const auto bind = [&](RasterShape shape, const gpu::GraphicsPipeline& pipeline) {
         if (frame_bindings_.contains(shape)) return;
-        const std::vector<gpu::Bind> binds{
-            {0, frame_}, {1, materials_}, {2, lights_}, {3, geometry_.face_normals()}, {4, atlas_}};
+        const std::vector<gpu::Bind> binds{{0, frame_},           {1, materials_},
+                                           {2, lights_},          {3, geometry_.face_normals()},
+                                           {4, emitter_records_}, {5, atlas_}};
         frame_bindings_.emplace(shape, gpu::Bindings(device_, pipeline.layout(), binds, 0));
     };
     for (const Item& item : items_) bind(item.shape, *item.color);
@@ -251,8 +256,12 @@ void RasterScene::write_frame(const View& view)
     std::vector<shared::LightRecord> lights;
     for (const PosedLight& light : posed_.lights) lights.push_back(pack(light, eye_of(view)));
     write(lights_, std::span<const shared::LightRecord>(lights));
+    std::vector<shared::EmitterRecord> emitters;
+    for (const RasterEmitter& emitter : emitters_) emitters.push_back(pack(emitter, eye_of(view)));
+    write(emitter_records_, std::span<const shared::EmitterRecord>(emitters));
     const shared::RasterFrame frame =
-        make_frame(posed_, view, tables_ ? &*tables_ : nullptr, static_cast<std::uint32_t>(lights.size()));
+        make_frame(posed_, view, tables_ ? &*tables_ : nullptr, static_cast<std::uint32_t>(lights.size()),
+                   static_cast<std::uint32_t>(emitters_.size()));
     write(frame_, std::span<const shared::RasterFrame>(&frame, 1));
 }
 

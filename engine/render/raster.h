@@ -9,6 +9,7 @@
 #include "engine/gpu/commands.h"
 #include "engine/image/film.h"
 #include "engine/render/environment.h"
+#include "engine/render/raster_emitters.h"
 #include "engine/render/raster_frame.h"
 #include "engine/render/raster_geometry.h"
 #include "engine/render/raster_pipelines.h"
@@ -99,6 +100,8 @@ class RasterScene {
     gpu::Buffer frame_;
     gpu::Buffer materials_;
     gpu::Buffer lights_;
+    std::vector<RasterEmitter> emitters_;
+    gpu::Buffer emitter_records_;
     std::vector<Item> items_;
     std::map<std::array<Index, 5>, gpu::Bindings> texture_bindings_;  // by the textures read
     const gpu::GraphicsPipeline* background_ = nullptr;               // null: cleared

@@ -56,7 +56,7 @@ RasterProjection project(const View& view, const dvec3& bounds_min, const dvec3&
 }
 
 shared::RasterFrame make_frame(const PosedScene& posed, const View& view, const EnvironmentTables* tables,
-                               std::uint32_t light_count)
+                               std::uint32_t light_count, std::uint32_t emitter_count)
 {
     const RasterProjection projection = project(view, posed.bounds_min, posed.bounds_max);
     const dmat3 rotation = world_from_camera(view);
@@ -72,7 +72,8 @@ shared::RasterFrame make_frame(const PosedScene& posed, const View& view, const 
         .size = vec2(static_cast<float>(view.width), static_cast<float>(view.height)),
         .depth_range = vec2(dvec2(projection.near, projection.far)),
         .mirror_size = uvec2(0),
-        .light_count = light_count};
+        .light_count = light_count,
+        .emitter_count = emitter_count};
     if (tables != nullptr) {
         for (std::size_t i = 0; i < tables->irradiance.size(); ++i)
             frame.irradiance[i] = vec3(tables->irradiance[i] * environment.scale);

@@ -18,7 +18,7 @@ RasterProjection project(const View& view, const dvec3& bounds_min, const dvec3&
 
 /// What a frame of `posed` seen by `view` tells its shaders; `tables` null where there is no environment map.
 shared::RasterFrame make_frame(const PosedScene& posed, const View& view, const EnvironmentTables* tables,
-                               std::uint32_t light_count);
+                               std::uint32_t light_count, std::uint32_t emitter_count);
 
 /// world_from_object relative to the eye (TF-2), and the normal matrix scaled so that nothing under- or overflows.
 void place(const dmat4& world_from_object, const dvec3& eye, shared::RasterDraw& draw);

@@ -116,6 +116,7 @@ void RasterVariants::set_frame(RasterVariant& variant) const
 {
     variant.set(RasterConstant::environment, environment_);
     variant.set(RasterConstant::punctual_lights, !posed_.lights.empty() && required_.has(Feature::punctual_lights));
+    variant.set(RasterConstant::emitters, required_.has(Feature::emission));
     variant.set(RasterConstant::blinn_phong, blinn_phong_);
     variant.set(RasterConstant::orthographic, posed_.view.camera.orthographic && required_.has(Feature::orthographic));
     variant.set(RasterConstant::samples, variant.target == RasterTarget::aovs ? 1 : samples_);

@@ -33,6 +33,7 @@ enum class RasterConstant : unsigned {
     samples,
     triangles,
     cull_back,
+    emitters,
     count
 };
 

@@ -24,6 +24,7 @@ layout(constant_id = 17) const bool kOrthographic = false;
 layout(constant_id = 18) const uint kSamples = 1u;          // of a pixel: 1 or 4
 layout(constant_id = 19) const bool kTriangles = true;      // else points or lines
 layout(constant_id = 20) const bool kCullBack = true;       // spheres; meshes are culled by the pipeline
+layout(constant_id = 21) const bool kEmitters = false;       // emissive surfaces that light others (SH-39)
 
 const uint kEnvironmentNone = 0u;
 const uint kEnvironmentConstant = 1u;

@@ -9,7 +9,8 @@ layout(set = 0, binding = 0, scalar) readonly buffer FrameBlock { RasterFrame fr
 layout(set = 0, binding = 1, scalar) readonly buffer MaterialBlock { MaterialRecord materials[]; };
 layout(set = 0, binding = 2, scalar) readonly buffer LightBlock { LightRecord lights[]; };
 layout(set = 0, binding = 3, scalar) readonly buffer FaceBlock { vec3 face_normals[]; };  // object space, unit
-layout(set = 0, binding = 4) uniform texture2D environment_atlas;
+layout(set = 0, binding = 4, scalar) readonly buffer EmitterBlock { EmitterRecord emitters[]; };
+layout(set = 0, binding = 5) uniform texture2D environment_atlas;
 
 const float kPi = 3.14159265358979323846;
 

@@ -38,6 +38,26 @@ vec3 punctual_light(Surface s, vec3 position, vec3 wo, float n_v)
     return sum;
 }
 
+/// (SH-39) Emissive draws and spheres seen as points, but for `object_id` itself.
+vec3 emitter_light(Surface s, vec3 position, vec3 wo, float n_v, uint object_id)
+{
+    vec3 sum = vec3(0.0);
+    for (uint i = 0u; i < frame.emitter_count; ++i) {
+        const EmitterRecord emitter = emitters[i];
+        const vec3 away = emitter.center - position;
+        const float d2 = dot(away, away);
+        const vec3 wi = away * inversesqrt(max(d2, 1e-30));
+        const float n_l = dot(s.n, wi);
+        if (emitter.object_id == object_id || n_l <= 0.0 || dot(s.ng, wi) <= 0.0) continue;
+        const float facing = -dot(emitter.area_vector, wi);
+        float seen = 0.25 * emitter.area;
+        if ((emitter.flags & kEmitterFlat) != 0u)
+            seen = (emitter.flags & kEmitterTwoSided) != 0u ? abs(facing) : max(facing, 0.0);
+        sum += reflected(s.reflectance, s.n, wo, wi, n_v) * emitter.radiance * (n_l * seen / max(d2, emitter.area / kPi));
+    }
+    return sum;
+}
+
 /// (SH-33), (SH-34), (SH-37); the ambient term of (SH-38).
 vec3 environment_light(Surface s, vec3 wo, float n_v)
 {
@@ -55,7 +75,7 @@ vec3 environment_light(Surface s, vec3 wo, float n_v)
 }
 
 /// (SH-31); what is not lit shows its base colour, and its emission unless it is `unlit` (SH-15).
-vec3 radiance(Surface s, vec3 position)
+vec3 radiance(Surface s, vec3 position, uint object_id)
 {
     if (kModel == kModelUnlit) return s.base;
     if (!kLit) return s.base + s.emission;
@@ -63,14 +83,16 @@ vec3 radiance(Surface s, vec3 position)
     const float n_v = max(dot(s.n, wo), 1e-4);
     vec3 sum = s.emission;
     if (kPunctualLights && kModel != kModelMirror) sum += punctual_light(s, position, wo, n_v);
+    if (kEmitters && kModel != kModelMirror) sum += emitter_light(s, position, wo, n_v, object_id);
     if (kEnvironment != kEnvironmentNone) sum += environment_light(s, wo, n_v);
     return sum;
 }
 
 /// The colour to blend over what is behind: premultiplied (SH-32).
-vec4 shade(Surface s, vec3 position)
+vec4 shade(Surface s, vec3 position, uint object_id)
 {
-    return kAlphaBlend ? vec4(radiance(s, position) * s.alpha, s.alpha) : vec4(radiance(s, position), 1.0);
+    const vec3 color = radiance(s, position, object_id);
+    return kAlphaBlend ? vec4(color * s.alpha, s.alpha) : vec4(color, 1.0);
 }
 
 #endif

@@ -13,5 +13,5 @@ void main()
     const Point point = mesh_point();
     const Surface surface = resolve_surface(material, point);
     if (kAlphaMask && surface.alpha < material.alpha_cutoff) discard;
-    color = shade(surface, point.position);
+    color = shade(surface, point.position, draw.object_id);
 }

@@ -18,5 +18,5 @@ void main()
     if (kAlphaMask && surface.alpha < material.alpha_cutoff) discard;
     gl_SampleMask[0] = covered;
     gl_FragDepth = sphere_depth(t);
-    color = shade(surface, point.position);
+    color = shade(surface, point.position, sphere.object_id);
 }

@@ -17,6 +17,21 @@ struct RasterFrame {
     vec2 depth_range;             // near, and far of an orthographic view, metres
     uvec2 mirror_size;            // of table 0 in the environment's atlas, texels
     uint light_count;
+    uint emitter_count;
+};
+
+// Bits of EmitterRecord::flags.
+ETALON_CONSTANT uint kEmitterFlat = 1u;      // seen by the projection of its area vector, else by a quarter of its area
+ETALON_CONSTANT uint kEmitterTwoSided = 2u;
+
+/// An emissive draw or sphere as others see it (SH-39).
+struct EmitterRecord {
+    vec3 radiance;     // nit
+    float area;        // square metres
+    vec3 center;       // camera-relative world
+    uint object_id;    // as RasterDraw's
+    vec3 area_vector;  // sum of area times ng, world, square metres
+    uint flags;
 };
 
 /// One draw of a mesh: push constants.
@@ -38,7 +53,8 @@ struct RasterSphere {
 
 ETALON_SHARED_END
 #ifdef __cplusplus
-static_assert(sizeof(etalon::shared::RasterFrame) == 64 + 36 + 108 + 12 + 8 + 4 + 8 + 8 + 8 + 8 + 4);
+static_assert(sizeof(etalon::shared::RasterFrame) == 64 + 36 + 108 + 12 + 8 + 4 + 8 + 8 + 8 + 8 + 8);
+static_assert(sizeof(etalon::shared::EmitterRecord) == 48);
 static_assert(sizeof(etalon::shared::RasterDraw) == 48 + 36 + 12);
 static_assert(sizeof(etalon::shared::RasterSphere) == 24);
 #endif
