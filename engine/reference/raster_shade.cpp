@@ -1,0 +1,163 @@
+#include "engine/reference/raster_shade.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/reference/light.h"
+
+namespace etalon::reference {
+namespace {
+
+constexpr double kSmallestCosine = 1e-4;  // (SH-32)
+
+}  // namespace
+
+RasterMaterial raster_material(const Material& material, const MaterialPoint& point)  // (SH-37)
+{
+    const auto squared_alpha = [](double roughness) { return std::max(roughness * roughness, 1e-3); };
+    RasterMaterial m;
+    switch (material.model) {
+        case BsdfModel::unlit: break;
+        case BsdfModel::lambert:
+            m.diffuse = point.color;
+            m.has_specular = false;
+            break;
+        case BsdfModel::mirror:
+            m.f0 = point.color;
+            m.roughness = 0;
+            m.is_mirror = true;
+            break;
+        case BsdfModel::rough_conductor:
+            for (int c = 0; c < 3; ++c) m.f0[c] = fresnel_conductor(1, material.eta[c], material.k[c]);
+            m.roughness = std::sqrt(material.ggx_alpha);
+            break;
+        case BsdfModel::dielectric:
+        case BsdfModel::rough_dielectric: {
+            const double r = (material.eta.x - 1) / (material.eta.x + 1);
+            m.f0 = dvec3(r * r);
+            m.roughness = material.model == BsdfModel::dielectric ? 0 : std::sqrt(material.ggx_alpha);
+            break;
+        }
+        case BsdfModel::metallic_roughness:
+            m.diffuse = point.color * (1 - point.metallic);
+            m.f0 = dvec3(0.04) + point.metallic * (point.color - dvec3(0.04));
+            m.roughness = point.roughness;
+            break;
+    }
+    m.alpha = squared_alpha(m.roughness);
+    return m;
+}
+
+dvec3 reflect_pbr(const RasterMaterial& m, const dvec3& n, const dvec3& wo, const dvec3& wi, double n_o)
+{
+    const double n_i = dot(n, wi);
+    if (!(n_i > 0) || m.is_mirror) return dvec3(0);
+    if (!m.has_specular) return m.diffuse * (n_i / kPi);
+    const dvec3 sum = wo + wi;
+    if (!(dot(sum, sum) > 1e-28)) return dvec3(0);  // opposite directions have no half vector (S4)
+    const dvec3 h = normalize(sum);
+    const dvec3 sine = cross(n, h);
+    const double n_h = dot(n, h);
+    const double k = m.alpha / (dot(sine, sine) + n_h * n_h * m.alpha * m.alpha);
+    const double d = k * k / kPi;  // (SH-11)
+    const dvec3 f = fresnel_schlick(m.f0, dot(wo, h));
+    return ((dvec3(1) - f) * m.diffuse / kPi + f * (d * ggx_v(n_o, n_i, m.alpha))) * n_i;  // (SH-14)
+}
+
+double blinn_phong_exponent(double alpha) { return std::clamp(2 / (alpha * alpha) - 2, 0.0, 1e6); }
+
+// n·h = 1 − d²/2, whose logarithm is exact near 1 where n·h itself has no digits left (S1).
+double blinn_phong_lobe(double exponent, double distance)
+{
+    const double p = exponent;
+    const double scale = (p + 2) * (p + 4) / (8 * kPi * (std::exp2(-p / 2) + p));
+    if (p == 0) return scale;
+    const double half_square = distance * distance / 2;
+    return half_square >= 1 ? 0 : scale * std::exp(p * std::log1p(-half_square));
+}
+
+dvec3 reflect_blinn_phong(const RasterMaterial& m, const dvec3& n, const dvec3& wo, const dvec3& wi)  // (SH-38)
+{
+    const double n_i = dot(n, wi);
+    if (!(n_i > 0)) return dvec3(0);
+    dvec3 f = m.diffuse / kPi;
+    const dvec3 sum = wo + wi;
+    if (m.has_specular && dot(sum, sum) > 1e-28)
+        f += m.f0 * blinn_phong_lobe(blinn_phong_exponent(m.alpha), length(n - normalize(sum)));
+    return f * n_i;
+}
+
+dvec2 specular_scale_bias(double roughness, double n_o)  // (SH-34) Karis, "Physically Based Shading on Mobile", 2014
+{
+    const dvec4 r = roughness * dvec4(-1, -0.0275, -0.572, 0.022) + dvec4(1, 0.0425, 1.04, -0.04);
+    const double a = std::min(r.x * r.x, std::exp2(-9.28 * n_o)) * r.x + r.y;
+    return {-1.04 * a + r.z, 1.04 * a + r.w};
+}
+
+RasterShader::RasterShader(const World& world, const RenderSettings& settings)
+    : world_(&world),
+      camera_(world.posed->view),
+      environment_(world.posed->environment, settings.threads),
+      blinn_phong_(settings.shading == Shading::blinn_phong),
+      background_(settings.background),
+      background_color_(settings.background_color)
+{}
+
+dvec3 RasterShader::towards_viewer(const dvec3& position) const
+{
+    const View& view = world_->posed->view;
+    if (view.camera.orthographic) return normalize(dvec3(view.world_from_camera[2]));
+    return normalize(dvec3(view.world_from_camera[3]) - position);
+}
+
+std::optional<Shaded> RasterShader::shade(const Fragment& fragment) const
+{
+    const Material& material = *fragment.material;
+    const MaterialPoint point = evaluate(material, world_->textures, fragment.attributes);
+    if (material.alpha_mode == AlphaMode::mask && point.alpha < material.alpha_cutoff) return std::nullopt;
+    Shaded out;
+    if (material.alpha_mode == AlphaMode::blend) out.alpha = std::clamp(point.alpha, 0.0, 1.0);
+    const bool emits = fragment.front || (material.double_sided && !material.emits_front_only);  // (SH-21)
+    if (emits || material.model == BsdfModel::unlit) out.radiance = point.emission;
+    if (material.model == BsdfModel::unlit) return out;
+    if (!fragment.is_lit) {  // glTF 2.0 §3.9.7: points and lines without normals
+        out.radiance += point.color;
+        return out;
+    }
+
+    const dvec3 wo = towards_viewer(fragment.position);
+    const dvec3 normal = fragment.attributes.normal;
+    const dvec3 without_face = normal == dvec3(0) ? wo : normalize(normal);  // points, lines, faces without area
+    const dvec3 ng_file = fragment.ng == dvec3(0) ? without_face : fragment.ng;
+    const double side = fragment.front ? 1 : -1;  // (SH-3)
+    const dvec3 n = side * shading_normal(material, world_->textures, fragment.attributes, ng_file);
+    const dvec3 ng = side * ng_file;
+    const double n_o = std::max(dot(n, wo), kSmallestCosine);
+    const RasterMaterial m = raster_material(material, point);
+    for (const PosedLight& light : world_->posed->lights) {  // (SH-31)
+        const Incident in = incident(light, fragment.position);
+        if (!(dot(ng, in.wi) > 0)) continue;
+        const dvec3 f = blinn_phong_ ? reflect_blinn_phong(m, n, wo, in.wi) : reflect_pbr(m, n, wo, in.wi, n_o);
+        if (f != dvec3(0)) out.radiance += f * in.irradiance;
+    }
+    if (blinn_phong_) {
+        out.radiance += point.occlusion * (m.diffuse + m.f0) * environment_.irradiance(n) / kPi;
+        return out;
+    }
+    if (m.diffuse != dvec3(0)) out.radiance += point.occlusion * m.diffuse / kPi * environment_.irradiance(n);  // (SH-33)
+    if (!m.has_specular) return out;
+    const dvec3 r = 2 * dot(wo, n) * n - wo;
+    const dvec2 ab = specular_scale_bias(m.roughness, n_o);
+    const dvec3 specular = m.is_mirror ? m.f0 : m.f0 * ab.x + ab.y;
+    out.radiance += point.occlusion * environment_.prefiltered(r, m.roughness) * specular;  // (SH-34)
+    return out;
+}
+
+Shaded RasterShader::background(const dvec2& film) const
+{
+    if (background_ == Background::transparent) return {.radiance = dvec3(0), .alpha = 0};
+    if (background_ == Background::colour) return {.radiance = background_color_, .alpha = 1};
+    return {.radiance = environment_radiance(world_->posed->environment, camera_.pinhole(film).direction), .alpha = 1};
+}
+
+}  // namespace etalon::reference

@@ -1,0 +1,70 @@
+#pragma once
+#include <optional>
+
+#include "engine/reference/camera.h"
+#include "engine/reference/environment.h"
+#include "engine/reference/surface.h"
+#include "engine/scene/settings.h"
+
+namespace etalon::reference {
+
+/// What is shaded: one surface at one pixel's centre. (SH-30)
+struct Fragment {
+    const Material* material = nullptr;
+    Attributes attributes;      ///< with the footprint of the pixel
+    dvec3 position{0};          ///< world
+    dvec3 ng{0};                ///< geometric normal as the file means it; 0 for points and lines
+    bool front = true;
+    bool is_lit = true;         ///< false: points and lines without normals show base colour and emission alone
+};
+
+struct Shaded {
+    dvec3 radiance{0};
+    double alpha = 1;           ///< 1 unless the material blends
+};
+
+/// The rasterizer's light and materials: docs/shading.md §4, without shadows.
+class RasterShader {
+   public:
+    RasterShader(const World& world, const RenderSettings& settings);
+
+    /// Nothing where MASK discards the fragment.
+    std::optional<Shaded> shade(const Fragment& fragment) const;
+    /// Behind everything: the environment, the colour, or nothing (alpha 0).
+    Shaded background(const dvec2& film) const;
+    const CameraRays& camera() const { return camera_; }
+
+   private:
+    dvec3 towards_viewer(const dvec3& position) const;
+
+    const World* world_;
+    CameraRays camera_;
+    EnvironmentTables environment_;
+    bool blinn_phong_;
+    Background background_;
+    dvec3 background_color_;
+};
+
+/// How a material reflects in a rasterizer. (SH-31), (SH-37)
+struct RasterMaterial {
+    dvec3 diffuse{0};       ///< c_diff
+    dvec3 f0{0};
+    double roughness = 1;   ///< perceptual
+    double alpha = 1;       ///< GGX
+    bool has_specular = true;
+    bool is_mirror = false; ///< reflects the environment alone
+};
+RasterMaterial raster_material(const Material& material, const MaterialPoint& point);
+
+/// f(wo, wi) n·wi with n·wo clamped to `n_o`; 0 unless n·wi > 0. (SH-31), or (SH-38).
+dvec3 reflect_pbr(const RasterMaterial& m, const dvec3& n, const dvec3& wo, const dvec3& wi, double n_o);
+dvec3 reflect_blinn_phong(const RasterMaterial& m, const dvec3& n, const dvec3& wo, const dvec3& wi);
+
+/// (SH-38) exponent of a GGX alpha, 0 … 10⁶.
+double blinn_phong_exponent(double alpha);
+/// (SH-38) normalized lobe (p + 2)(p + 4)/(8π(2^(−p/2) + p)) (n·h)^p from d = |n − h|.
+double blinn_phong_lobe(double exponent, double distance);
+/// (SH-34) [A, B].
+dvec2 specular_scale_bias(double roughness, double n_o);
+
+}  // namespace etalon::reference
