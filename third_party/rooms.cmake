@@ -19,6 +19,14 @@ if(ETALON_COVERAGE)
     target_link_options(etalon_options INTERFACE --coverage)
 endif()
 
+# etalon_program(<target>): what every program of this house gets besides its own sources.
+function(etalon_program target)
+    if(ETALON_SANITIZE MATCHES "address")
+        target_sources(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests/sanitizers/keep_loaded.cpp)
+        set_target_properties(${target} PROPERTIES ENABLE_EXPORTS ON)  # dlclose must be found by the libraries
+    endif()
+endfunction()
+
 # etalon_room(<name> [PUBLIC <targets>...] [PRIVATE <targets>...]): the sources of engine/<name> as etalon_<name>.
 function(etalon_room name)
     cmake_parse_arguments(arg "" "" "PUBLIC;PRIVATE" ${ARGN})
@@ -41,6 +49,7 @@ function(etalon_test name)
         return()
     endif()
     add_executable(test_${name} ${arg_SOURCES})
+    etalon_program(test_${name})
     list(TRANSFORM arg_ROOMS PREPEND etalon_)
     target_link_libraries(test_${name} PRIVATE ${arg_ROOMS} etalon_test_support GTest::gmock GTest::gtest_main)
     gtest_discover_tests(test_${name} DISCOVERY_MODE PRE_TEST

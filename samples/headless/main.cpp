@@ -1,4 +1,5 @@
-// The whole flow on one page: load a scene, pose it, ask what it requires, render it, develop the film, write the picture.
+// The whole flow on one page: load a scene, pose it, ask what it requires, render it, develop the film, write the
+// picture.
 #include <cstdio>
 
 #include "engine/base/error.h"

@@ -23,7 +23,10 @@ std::optional<Number> parse(std::string_view text)
 
 }  // namespace
 
-bool Arguments::has(std::string_view option) const { return given_.contains(std::string(option)); }
+bool Arguments::has(std::string_view option) const
+{
+    return given_.contains(std::string(option));
+}
 
 std::optional<std::string> Arguments::text(std::string_view option) const
 {
@@ -56,7 +59,8 @@ std::optional<double> Arguments::number(std::string_view option, double least, d
     const std::optional<std::string> value = text(option);
     if (!value) return std::nullopt;
     const std::optional<double> number = parse_number(*value);
-    if (!number || !(*number >= least && *number <= most)) refuse(option, *value, fmt::format("a number from {} to {}", least, most));
+    if (!number || !(*number >= least && *number <= most))
+        refuse(option, *value, fmt::format("a number from {} to {}", least, most));
     return number;
 }
 
@@ -76,7 +80,10 @@ std::optional<double> parse_number(std::string_view text)
     return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
-std::optional<std::uint64_t> parse_count(std::string_view text) { return parse<std::uint64_t>(text); }
+std::optional<std::uint64_t> parse_count(std::string_view text)
+{
+    return parse<std::uint64_t>(text);
+}
 
 std::vector<std::string> split(std::string_view text, char separator)
 {

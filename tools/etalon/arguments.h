@@ -10,14 +10,14 @@
 
 namespace etalon::cli {
 
-/// What was typed after a subcommand, as text by option name; read and checked on demand. Every reader throws Error(input)
-/// that names the option, the value and what it takes.
+/// What was typed after a subcommand, as text by option name; read and checked on demand. Every reader throws
+/// Error(input) that names the option, the value and what it takes.
 class Arguments {
-   public:
-    Arguments(const Command& command, std::vector<std::string> positional, std::map<std::string, std::vector<std::string>> given)
+ public:
+    Arguments(const Command& command, std::vector<std::string> positional,
+              std::map<std::string, std::vector<std::string>> given)
         : command_(&command), positional_(std::move(positional)), given_(std::move(given))
-    {
-    }
+    {}
 
     const Command& command() const { return *command_; }
     const std::vector<std::string>& positional() const { return positional_; }
@@ -31,7 +31,7 @@ class Arguments {
     std::optional<double> number(std::string_view option, double least, double most) const;
     std::optional<std::uint64_t> count(std::string_view option, std::uint64_t least, std::uint64_t most) const;
 
-   private:
+ private:
     const Command* command_;
     std::vector<std::string> positional_;
     std::map<std::string, std::vector<std::string>> given_;
@@ -44,6 +44,7 @@ std::optional<std::uint64_t> parse_count(std::string_view text);
 std::vector<std::string> split(std::string_view text, char separator);
 
 /// Throws Error(input): "--size: '12' is not WxH".
-[[noreturn]] void refuse(std::string_view option, std::string_view value, std::string_view expected, std::string mend = {});
+[[noreturn]] void refuse(std::string_view option, std::string_view value, std::string_view expected,
+                         std::string mend = {});
 
 }  // namespace etalon::cli

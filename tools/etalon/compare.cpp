@@ -21,23 +21,27 @@ namespace {
 std::vector<Renderer> contestants(const Arguments& arguments)
 {
     const std::vector<std::string>& names = find_option(*find_command("render"), "renderer")->choices;
-    constexpr Renderer kRenderers[] = {Renderer::raster, Renderer::path, Renderer::reference, Renderer::reference_raster};
+    constexpr Renderer kRenderers[] = {Renderer::raster, Renderer::path, Renderer::reference,
+                                       Renderer::reference_raster};
     const std::string list = arguments.text("renderers").value_or("");
     std::vector<Renderer> chosen;
     for (const std::string& word : split(list, ',')) {
         const auto found = std::find(names.begin(), names.end(), word);
         if (found == names.end()) {
             const std::string_view meant = nearest(word, names);
-            refuse("renderers", list, fmt::format("names out of {}", fmt::join(names, ", ")), meant.empty() ? "" : fmt::format("did you mean {}?", meant));
+            refuse("renderers", list, fmt::format("names out of {}", fmt::join(names, ", ")),
+                   meant.empty() ? "" : fmt::format("did you mean {}?", meant));
         }
         const Renderer renderer = kRenderers[found - names.begin()];
-        if (std::find(chosen.begin(), chosen.end(), renderer) != chosen.end()) refuse("renderers", list, "each name once");
+        if (std::find(chosen.begin(), chosen.end(), renderer) != chosen.end())
+            refuse("renderers", list, "each name once");
         chosen.push_back(renderer);
     }
     return chosen;
 }
 
-/// Each renderer draws its own random numbers: with shared ones the two errors would correlate and the test mean nothing.
+/// Each renderer draws its own random numbers: with shared ones the two errors would correlate and the test mean
+/// nothing.
 RenderSettings of_contender(RenderSettings settings, Renderer renderer)
 {
     settings.renderer = renderer;
@@ -45,12 +49,17 @@ RenderSettings of_contender(RenderSettings settings, Renderer renderer)
     return settings;
 }
 
-Contender contender(const std::string& scene_name, const PosedScene& posed, const RenderSettings& settings, Renderers& renderers)
+Contender contender(const std::string& scene_name, const PosedScene& posed, const RenderSettings& settings,
+                    Renderers& renderers)
 {
     const Renderer renderer = settings.renderer;
     const auto render = [&renderers, &posed, scene_name, settings](const Progress& progress) {
         Stopwatch stopwatch;
-        RendererRun run{.name = std::string(name(settings.renderer)), .label = std::string(label(settings.renderer)), .device = {}, .film = {}, .stages = {}};
+        RendererRun run{.name = std::string(name(settings.renderer)),
+                        .label = std::string(label(settings.renderer)),
+                        .device = {},
+                        .film = {},
+                        .stages = {}};
         run.film = renderers.draw(scene_name, posed, settings, progress);
         run.device = run.film.metadata.at("device");
         run.stages.push_back({"render", stopwatch.lap()});
@@ -73,7 +82,8 @@ std::string command_line(const Arguments& arguments)
 
 NamedValues describe(const PosedScene& posed, const RenderSettings& settings)
 {
-    NamedValues values = {{"size", fmt::format("{}x{}", posed.view.width, posed.view.height)}, {"seed", fmt::format("{}", settings.seed)}};
+    NamedValues values = {{"size", fmt::format("{}x{}", posed.view.width, posed.view.height)},
+                          {"seed", fmt::format("{}", settings.seed)}};
     for (const Knob& knob : knobs()) values.emplace_back(knob.name, knob_value(settings, knob.name));
     return values;
 }
@@ -102,7 +112,10 @@ int compare(const Arguments& arguments)
 
     const Interrupt interrupt;
     Renderers renderers(arguments);
-    Report report{.scene = scene_name, .command = command_line(arguments), .versions = versions(), .develop = develop_settings(arguments)};
+    Report report{.scene = scene_name,
+                  .command = command_line(arguments),
+                  .versions = versions(),
+                  .develop = develop_settings(arguments)};
     Stopwatch stopwatch;
     const Scene scene = open_scene(scene_name, arguments);
     report.stages.push_back({"load", stopwatch.lap()});
@@ -113,9 +126,11 @@ int compare(const Arguments& arguments)
     report.notes.insert(report.notes.end(), posed.notes.begin(), posed.notes.end());
 
     std::vector<Contender> contenders;
-    for (const Renderer renderer : chosen) contenders.push_back(contender(scene_name, posed, of_contender(settings, renderer), renderers));
+    for (const Renderer renderer : chosen)
+        contenders.push_back(contender(scene_name, posed, of_contender(settings, renderer), renderers));
     ProgressDisplay display(arguments);
-    report = measure_agreement(std::move(report), contenders, comparing, display.progress(short_name(scene_name), interrupt.flag()));
+    report = measure_agreement(std::move(report), contenders, comparing,
+                               display.progress(short_name(scene_name), interrupt.flag()));
     display.clear();
 
     const std::vector<std::filesystem::path> written = write_report(report, folder);

@@ -27,8 +27,10 @@ std::string shell_quoted(std::string_view text)
 {
     std::string out = "'";
     for (const char c : text)
-        if (c == '\'') out += "'\\''";
-        else out += c;
+        if (c == '\'')
+            out += "'\\''";
+        else
+            out += c;
     return out + '\'';
 }
 
@@ -37,9 +39,13 @@ std::string bash_option_case(const Option& option)
     std::string pattern = "--" + option.name;
     if (option.letter != 0) pattern += fmt::format("|-{}", option.letter);
     std::string answer = "COMPREPLY=()";
-    if (!option.choices.empty()) answer = fmt::format("COMPREPLY=($(compgen -W {} -- \"$word\"))", shell_quoted(fmt::format("{}", fmt::join(option.choices, " "))));
-    else if (option.completes == Completes::folder) answer = "COMPREPLY=($(compgen -d -- \"$word\"))";
-    else if (option.completes == Completes::file) answer = "COMPREPLY=($(compgen -f -- \"$word\"))";
+    if (!option.choices.empty())
+        answer = fmt::format("COMPREPLY=($(compgen -W {} -- \"$word\"))",
+                             shell_quoted(fmt::format("{}", fmt::join(option.choices, " "))));
+    else if (option.completes == Completes::folder)
+        answer = "COMPREPLY=($(compgen -d -- \"$word\"))";
+    else if (option.completes == Completes::file)
+        answer = "COMPREPLY=($(compgen -f -- \"$word\"))";
     return fmt::format("                {}) {}; return ;;\n", pattern, answer);
 }
 
@@ -52,11 +58,13 @@ std::string bash_command_case(const Command& command)
         if (!option.argument.empty()) cases += bash_option_case(option);
     }
     std::string rest = "COMPREPLY=()";
-    if (command.name == "completion") rest = "COMPREPLY=($(compgen -W 'bash zsh fish' -- \"$word\"))";
+    if (command.name == "completion")
+        rest = "COMPREPLY=($(compgen -W 'bash zsh fish' -- \"$word\"))";
     else if (command.completes == Completes::scene)
         rest = fmt::format("COMPREPLY=($(compgen -W {} -- \"$word\") $(compgen -f -- \"$word\"))",
                            shell_quoted(fmt::format("{}", fmt::join(scene_names(), " "))));
-    else if (command.completes == Completes::file) rest = "COMPREPLY=($(compgen -f -- \"$word\"))";
+    else if (command.completes == Completes::file)
+        rest = "COMPREPLY=($(compgen -f -- \"$word\"))";
     if (!cases.empty()) cases = fmt::format("            case \"$before\" in\n{}            esac\n", cases);
     return fmt::format(
         "        {})\n{}            if [[ $word == -* ]]; then COMPREPLY=($(compgen -W {} -- \"$word\"))\n"
@@ -68,7 +76,8 @@ std::string bash_script()
 {
     std::string cases;
     for (const Command& command : commands()) cases += bash_command_case(command);
-    // A colon splits words in bash, so that builtin:cornell arrives in three; __ltrim_colon_completions mends the answer.
+    // A colon splits words in bash, so that builtin:cornell arrives in three; __ltrim_colon_completions mends the
+    // answer.
     return fmt::format(
         "# bash completion of etalon; made by `etalon completion bash`\n"
         "_etalon()\n{{\n"
@@ -97,14 +106,18 @@ std::string zsh_escaped(std::string_view text)
 std::string zsh_option(const Option& option)
 {
     std::string action;
-    if (!option.choices.empty()) action = fmt::format("({})", fmt::join(option.choices, " "));
-    else if (option.completes == Completes::file) action = "_files";
-    else if (option.completes == Completes::folder) action = "_files -/";
+    if (!option.choices.empty())
+        action = fmt::format("({})", fmt::join(option.choices, " "));
+    else if (option.completes == Completes::file)
+        action = "_files";
+    else if (option.completes == Completes::folder)
+        action = "_files -/";
     std::string value;
     if (!option.argument.empty()) value = fmt::format(":{}:{}", zsh_escaped(option.argument), action);
     const std::string repeat = option.repeats ? "*" : "";
     std::string line = shell_quoted(fmt::format("{}--{}[{}]{}", repeat, option.name, zsh_escaped(option.help), value));
-    if (option.letter != 0) line += ' ' + shell_quoted(fmt::format("{}-{}[{}]{}", repeat, option.letter, zsh_escaped(option.help), value));
+    if (option.letter != 0)
+        line += ' ' + shell_quoted(fmt::format("{}-{}[{}]{}", repeat, option.letter, zsh_escaped(option.help), value));
     return line;
 }
 
@@ -142,12 +155,17 @@ std::string zsh_script()
 
 std::string fish_option(const Command& command, const Option& option)
 {
-    std::string line = fmt::format("complete -c etalon -n '__fish_seen_subcommand_from {}' -l {}", command.name, option.name);
+    std::string line =
+        fmt::format("complete -c etalon -n '__fish_seen_subcommand_from {}' -l {}", command.name, option.name);
     if (option.letter != 0) line += fmt::format(" -s {}", option.letter);
-    if (!option.choices.empty()) line += fmt::format(" -x -a {}", shell_quoted(fmt::format("{}", fmt::join(option.choices, " "))));
-    else if (option.completes == Completes::folder) line += " -x -a '(__fish_complete_directories)'";
-    else if (option.completes == Completes::file) line += " -r -F";
-    else if (!option.argument.empty()) line += " -x";
+    if (!option.choices.empty())
+        line += fmt::format(" -x -a {}", shell_quoted(fmt::format("{}", fmt::join(option.choices, " "))));
+    else if (option.completes == Completes::folder)
+        line += " -x -a '(__fish_complete_directories)'";
+    else if (option.completes == Completes::file)
+        line += " -r -F";
+    else if (!option.argument.empty())
+        line += " -x";
     return line + " -d " + shell_quoted(option.help) + '\n';
 }
 
@@ -156,12 +174,16 @@ std::string fish_script()
     const std::string names = fmt::format("{}", fmt::join(command_names(), " "));
     std::string text = "# fish completion of etalon; made by `etalon completion fish`\n";
     for (const Command& command : commands()) {
-        text += fmt::format("complete -c etalon -f -n 'not __fish_seen_subcommand_from {}' -a {} -d {}\n", names, command.name, shell_quoted(command.summary));
+        text += fmt::format("complete -c etalon -f -n 'not __fish_seen_subcommand_from {}' -a {} -d {}\n", names,
+                            command.name, shell_quoted(command.summary));
         for (const Option& option : command.options) text += fish_option(command, option);
         const std::string seen = fmt::format("complete -c etalon -n '__fish_seen_subcommand_from {}'", command.name);
-        if (command.name == "completion") text += seen + " -f -a 'bash zsh fish'\n";
-        else if (command.completes == Completes::scene) text += fmt::format("{} -a {}\n", seen, shell_quoted(fmt::format("{}", fmt::join(scene_names(), " "))));
-        else if (command.completes == Completes::nothing) text += seen + " -f\n";
+        if (command.name == "completion")
+            text += seen + " -f -a 'bash zsh fish'\n";
+        else if (command.completes == Completes::scene)
+            text += fmt::format("{} -a {}\n", seen, shell_quoted(fmt::format("{}", fmt::join(scene_names(), " "))));
+        else if (command.completes == Completes::nothing)
+            text += seen + " -f\n";
     }
     return text;
 }
@@ -171,10 +193,14 @@ std::string fish_script()
 int completion(const Arguments& arguments)
 {
     const std::string& shell = arguments.positional().front();
-    if (shell == "bash") put(bash_script());
-    else if (shell == "zsh") put(zsh_script());
-    else if (shell == "fish") put(fish_script());
-    else throw Error(Blame::input, fmt::format("no completion for the shell '{}'", shell), "one of bash, zsh, fish");
+    if (shell == "bash")
+        put(bash_script());
+    else if (shell == "zsh")
+        put(zsh_script());
+    else if (shell == "fish")
+        put(fish_script());
+    else
+        throw Error(Blame::input, fmt::format("no completion for the shell '{}'", shell), "one of bash, zsh, fish");
     return 0;
 }
 

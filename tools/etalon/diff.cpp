@@ -36,10 +36,14 @@ int diff(const Arguments& arguments)
     if (output) check_output(*output);
 
     const FileDiff result = diff_files(a, b, settings);
-    if (output == "-") put(encode_png(relative_difference_picture(result.a, result.b), {}));
-    else if (output) write_png(relative_difference_picture(result.a, result.b), {{"etalon:difference", a + " - " + b}}, *output);
-    if (arguments.has("json")) put(diff_json(result, a, b));
-    else if (output != "-") put(diff_table(result));
+    if (output == "-")
+        put(encode_png(relative_difference_picture(result.a, result.b), {}));
+    else if (output)
+        write_png(relative_difference_picture(result.a, result.b), {{"etalon:difference", a + " - " + b}}, *output);
+    if (arguments.has("json"))
+        put(diff_json(result, a, b));
+    else if (output != "-")
+        put(diff_table(result));
     return passed(result.comparison.verdict) ? 0 : 1;
 }
 

@@ -12,8 +12,10 @@ constexpr std::size_t kHelpColumn = 32;  // where the sentences start: most spel
 std::string row(const std::string& left, std::string_view text)
 {
     std::string line = "  " + left;
-    if (line.size() + 2 > kHelpColumn) line += '\n' + std::string(kHelpColumn, ' ');
-    else line.resize(kHelpColumn, ' ');
+    if (line.size() + 2 > kHelpColumn)
+        line += '\n' + std::string(kHelpColumn, ' ');
+    else
+        line.resize(kHelpColumn, ' ');
     return line + wrapped(text, kHelpColumn).substr(kHelpColumn);
 }
 
@@ -61,15 +63,18 @@ std::string spelling(const Option& option)
 
 std::string overview()
 {
-    std::string text = "etalon: a glTF renderer whose every picture comes with its error\n\nusage: etalon COMMAND [OPTIONS] ...\n\n";
+    std::string text =
+        "etalon: a glTF renderer whose every picture comes with its error\n\nusage: etalon COMMAND [OPTIONS] ...\n\n";
     for (const Command& command : commands()) text += row(command.name, command.summary);
-    return text + "\netalon COMMAND --help says more; etalon --version says which this is.\n"
-                  "example: etalon compare builtin:cornell -o out/cornell\n";
+    return text +
+           "\netalon COMMAND --help says more; etalon --version says which this is.\n"
+           "example: etalon compare builtin:cornell -o out/cornell\n";
 }
 
 std::string help(const Command& command)
 {
-    std::string text = fmt::format("usage: etalon {} [OPTIONS]{}{}\n\n", command.name, command.argument.empty() ? "" : " ", command.argument);
+    std::string text = fmt::format("usage: etalon {} [OPTIONS]{}{}\n\n", command.name,
+                                   command.argument.empty() ? "" : " ", command.argument);
     text += wrapped(command.description, 0);
     for (const std::string& heading : headings(command)) {
         text += fmt::format("\n{}:\n", heading);

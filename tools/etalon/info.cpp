@@ -44,7 +44,10 @@ Machine examine(const gpu::DeviceOptions& options)
     return machine;
 }
 
-std::string gibibytes(std::uint64_t bytes) { return fmt::format("{:.1f} GiB", static_cast<double>(bytes) / (1ull << 30)); }
+std::string gibibytes(std::uint64_t bytes)
+{
+    return fmt::format("{:.1f} GiB", static_cast<double>(bytes) / (1ull << 30));
+}
 
 std::string as_text(const Machine& machine)
 {
@@ -52,8 +55,9 @@ std::string as_text(const Machine& machine)
     for (const std::string& line : machine.versions) text += line + '\n';
     text += fmt::format("\ndevices: {}\n", machine.devices.size());
     for (const gpu::DeviceReport& device : machine.devices) {
-        text += fmt::format("{} {} {} ({}, {}), {}, Vulkan {}, {}\n", device.chosen ? '*' : ' ', device.index, device.name, name(device.kind),
-                            device.type, device.driver, device.api_version, gibibytes(device.memory));
+        text +=
+            fmt::format("{} {} {} ({}, {}), {}, Vulkan {}, {}\n", device.chosen ? '*' : ' ', device.index, device.name,
+                        name(device.kind), device.type, device.driver, device.api_version, gibibytes(device.memory));
         for (const std::string& reason : device.reasons) text += fmt::format("      not chosen: {}\n", reason);
     }
     text += fmt::format("\nvulkan:    {}", machine.vulkan.works ? "works" : "does not work");
@@ -67,13 +71,25 @@ Json as_json(const Machine& machine)
 {
     std::vector<Json> devices;
     for (const gpu::DeviceReport& d : machine.devices)
-        devices.push_back(Json::object({{"index", d.index}, {"name", d.name}, {"kind", name(d.kind)}, {"type", d.type}, {"driver", d.driver},
-                                        {"api_version", d.api_version}, {"memory", d.memory}, {"chosen", d.chosen}, {"reasons", d.reasons}}));
+        devices.push_back(Json::object({{"index", d.index},
+                                        {"name", d.name},
+                                        {"kind", name(d.kind)},
+                                        {"type", d.type},
+                                        {"driver", d.driver},
+                                        {"api_version", d.api_version},
+                                        {"memory", d.memory},
+                                        {"chosen", d.chosen},
+                                        {"reasons", d.reasons}}));
     const gpu::ProbeResult& probe = machine.vulkan;
-    const Json vulkan = Json::object({{"name", "vulkan"}, {"works", probe.works}, {"milliseconds", probe.milliseconds},
-                                      {"detail", probe.detail}, {"validation", machine.validation}});
+    const Json vulkan = Json::object({{"name", "vulkan"},
+                                      {"works", probe.works},
+                                      {"milliseconds", probe.milliseconds},
+                                      {"detail", probe.detail},
+                                      {"validation", machine.validation}});
     const Json reference = Json::object({{"name", "reference"}, {"works", true}, {"threads", machine.threads}});
-    return Json::object({{"schema", "etalon-info/1"}, {"versions", machine.versions}, {"devices", devices},
+    return Json::object({{"schema", "etalon-info/1"},
+                         {"versions", machine.versions},
+                         {"devices", devices},
                          {"backends", std::vector<Json>{vulkan, reference}}});
 }
 

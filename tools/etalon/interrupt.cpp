@@ -43,6 +43,9 @@ Interrupt::~Interrupt()
     handle(SIGTERM, SIG_DFL);
 }
 
-const std::atomic<bool>* Interrupt::flag() const { return &stop_requested; }
+const std::atomic<bool>* Interrupt::flag() const
+{
+    return &stop_requested;
+}
 
 }  // namespace etalon::cli

@@ -8,7 +8,7 @@ inline constexpr int kInterruptedExitCode = 130;
 /// While one lives, the first Ctrl-C (SIGINT) or SIGTERM asks the running job to finish its pass, write what it has and
 /// end with exit code 130; a second one ends the process at once. One at a time.
 class Interrupt {
-   public:
+ public:
     Interrupt();
     ~Interrupt();
     Interrupt(const Interrupt&) = delete;

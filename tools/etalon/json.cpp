@@ -46,11 +46,16 @@ std::string json_quoted(std::string_view text)
     while (!text.empty()) {
         const std::size_t length = utf8_length(text);
         const char c = text.front();
-        if (length == 0) out += "\xef\xbf\xbd";
-        else if (c == '"' || c == '\\') out += {'\\', c};
-        else if (c == '\n') out += "\\n";
-        else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) out += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
-        else out += text.substr(0, length);
+        if (length == 0)
+            out += "\xef\xbf\xbd";
+        else if (c == '"' || c == '\\')
+            out += {'\\', c};
+        else if (c == '\n')
+            out += "\\n";
+        else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
+            out += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
+        else
+            out += text.substr(0, length);
         text.remove_prefix(length == 0 ? 1 : length);
     }
     return out + '"';
@@ -60,8 +65,7 @@ Json::Json(double value) : text_(std::isfinite(value) ? fmt::format("{}", value)
 
 Json::Json(const std::vector<Json>& values)
     : text_(join(values, '[', ']', [](const Json& value) { return value.text(); }))
-{
-}
+{}
 
 Json Json::object(std::initializer_list<Member> members)
 {

@@ -13,17 +13,19 @@ std::string json_quoted(std::string_view text);
 
 /// A JSON value put together from the inside out, already as text. Numbers that are not finite become null.
 class Json {
-   public:
+ public:
     Json() = default;  ///< null
     Json(bool value) : text_(value ? "true" : "false") {}
     Json(double value);
     template <std::integral Number>
-    Json(Number value) : text_(std::to_string(value)) {}
+    Json(Number value) : text_(std::to_string(value))
+    {}
     Json(std::string_view value) : text_(json_quoted(value)) {}
     Json(const std::string& value) : Json(std::string_view(value)) {}
     Json(const char* value) : Json(std::string_view(value)) {}
     template <typename T>
-    Json(const std::optional<T>& value) : text_(value ? Json(*value).text() : "null") {}
+    Json(const std::optional<T>& value) : text_(value ? Json(*value).text() : "null")
+    {}
     Json(const std::vector<Json>& values);
     Json(const std::vector<std::string>& values) : Json(std::vector<Json>(values.begin(), values.end())) {}
 
@@ -39,7 +41,7 @@ class Json {
 
     const std::string& text() const { return text_; }
 
-   private:
+ private:
     std::string text_ = "null";
 };
 

@@ -31,8 +31,12 @@ std::vector<Option> knob_rows()
 {
     std::vector<Option> rows;
     for (const Knob& knob : knobs())
-        rows.push_back({.name = std::string(knob.name), .argument = std::holds_alternative<Switch>(knob.type) ? "on|off" : "N", .help = sentence(knob),
-                        .standard = knob_value(RenderSettings{}, knob.name), .choices = choices(knob), .heading = "Speed and accuracy"});
+        rows.push_back({.name = std::string(knob.name),
+                        .argument = std::holds_alternative<Switch>(knob.type) ? "on|off" : "N",
+                        .help = sentence(knob),
+                        .standard = knob_value(RenderSettings{}, knob.name),
+                        .choices = choices(knob),
+                        .heading = "Speed and accuracy"});
     return rows;
 }
 

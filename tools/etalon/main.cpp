@@ -49,14 +49,18 @@ int run(const std::vector<std::string>& words)
 std::string coloured(std::string message)
 {
     constexpr std::string_view kName = "etalon:";
-    if (Terminal::of_standard_error().colour && message.starts_with(kName)) message.replace(0, kName.size(), "\033[31metalon:\033[0m");
+    if (Terminal::of_standard_error().colour && message.starts_with(kName))
+        message.replace(0, kName.size(), "\033[31metalon:\033[0m");
     return message;
 }
 
 Json as_json(const Error& error)
 {
     return Json::object({{"schema", "etalon-error/1"},
-                         {"error", Json::object({{"what", error.what()}, {"where", error.where()}, {"mend", error.mend()}, {"exit_code", error.exit_code()}})}});
+                         {"error", Json::object({{"what", error.what()},
+                                                 {"where", error.where()},
+                                                 {"mend", error.mend()},
+                                                 {"exit_code", error.exit_code()}})}});
 }
 
 int fail(const Error& error, bool json) noexcept
@@ -85,8 +89,11 @@ int main(int argc, char** argv)
     } catch (const Error& error) {
         return cli::fail(error, json);
     } catch (const std::bad_alloc&) {
-        return cli::fail(Error(Blame::machine, "out of memory", "a smaller --size or a smaller scene takes less"), json);
+        return cli::fail(Error(Blame::machine, "out of memory", "a smaller --size or a smaller scene takes less"),
+                         json);
     } catch (const std::exception& fault) {
-        return cli::fail(Error(Blame::machine, fault.what(), "this should have been caught earlier: please report it with the command line"), json);
+        return cli::fail(Error(Blame::machine, fault.what(),
+                               "this should have been caught earlier: please report it with the command line"),
+                         json);
     }
 }

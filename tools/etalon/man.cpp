@@ -13,9 +13,12 @@ std::string roff(std::string_view text)
 {
     std::string out = text.starts_with('.') || text.starts_with('\'') ? "\\&" : "";
     for (const char c : text) {
-        if (c == '\\') out += "\\e";
-        else if (c == '-') out += "\\-";
-        else out += c;
+        if (c == '\\')
+            out += "\\e";
+        else if (c == '-')
+            out += "\\-";
+        else
+            out += c;
     }
     return out;
 }
@@ -30,7 +33,8 @@ std::string option_entry(const Option& option)
 
 std::string command_section(const Command& command)
 {
-    std::string text = fmt::format(".SS \"etalon {} [OPTIONS] {}\"\n{}\n", command.name, roff(command.argument), roff(command.description));
+    std::string text = fmt::format(".SS \"etalon {} [OPTIONS] {}\"\n{}\n", command.name, roff(command.argument),
+                                   roff(command.description));
     for (const Option& option : command.options) text += option_entry(option);
     for (const Example& example : command.examples)
         text += fmt::format(".PP\n{}:\n.PP\n.RS\n.nf\n{}\n.fi\n.RE\n", roff(example.why), roff(example.line));
@@ -42,16 +46,21 @@ std::string command_section(const Command& command)
 int man(const Arguments&)
 {
     std::string text = fmt::format(
-        ".TH ETALON 1 \"\" \"etalon {}\" \"User Commands\"\n.SH NAME\netalon \\- a glTF renderer whose every picture comes with its error\n"
+        ".TH ETALON 1 \"\" \"etalon {}\" \"User Commands\"\n.SH NAME\netalon \\- a glTF renderer whose every picture "
+        "comes with its error\n"
         ".SH SYNOPSIS\n.B etalon\n.I COMMAND\n[OPTIONS] ...\n.SH DESCRIPTION\n"
-        "Etalon renders a glTF scene with a Vulkan rasterizer, a Vulkan path tracer or a double precision CPU reference, and says how large the\n"
+        "Etalon renders a glTF scene with a Vulkan rasterizer, a Vulkan path tracer or a double precision CPU "
+        "reference, and says how large the\n"
         "error of the picture is. Data goes to standard output, everything else to standard error.\n.SH COMMANDS\n",
         kVersion);
     for (const Command& command : commands()) text += command_section(command);
     text +=
-        ".SH EXIT STATUS\n.TP\n.B 0\nFine.\n.TP\n.B 1\nThe comparison or check failed.\n.TP\n.B 2\nBad usage or bad input.\n.TP\n.B 3\n"
-        "The machine cannot: no device, out of memory, device lost.\n.TP\n.B 130\nInterrupted; what was rendered so far has been written.\n"
-        ".SH ENVIRONMENT\n.TP\n.B NO_COLOR\nWhen set and not empty, no colours on the terminal.\n.TP\n.B VK_DRIVER_FILES\n"
+        ".SH EXIT STATUS\n.TP\n.B 0\nFine.\n.TP\n.B 1\nThe comparison or check failed.\n.TP\n.B 2\nBad usage or bad "
+        "input.\n.TP\n.B 3\n"
+        "The machine cannot: no device, out of memory, device lost.\n.TP\n.B 130\nInterrupted; what was rendered so "
+        "far has been written.\n"
+        ".SH ENVIRONMENT\n.TP\n.B NO_COLOR\nWhen set and not empty, no colours on the terminal.\n.TP\n.B "
+        "VK_DRIVER_FILES\n"
         "Which Vulkan drivers the loader offers.\n";
     put(text);
     return 0;

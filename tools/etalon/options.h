@@ -13,15 +13,15 @@ enum class Completes { nothing, scene, file, folder };
 
 /// One option of a command. The parser, the help, the completions and the man page are all made from these rows.
 struct Option {
-    std::string name;              ///< without dashes: "size" is --size
-    char letter = 0;               ///< 'o' for -o; 0: none
-    std::string argument;          ///< what follows it: "WxH"; empty: a switch
-    std::string help;              ///< one sentence without a full stop
-    std::string standard;          ///< value when absent, as text; empty: none, or said in the help
+    std::string name;                  ///< without dashes: "size" is --size
+    char letter = 0;                   ///< 'o' for -o; 0: none
+    std::string argument;              ///< what follows it: "WxH"; empty: a switch
+    std::string help;                  ///< one sentence without a full stop
+    std::string standard;              ///< value when absent, as text; empty: none, or said in the help
     std::vector<std::string> choices;  ///< the only values; empty: any
     Completes completes = Completes::nothing;
-    bool repeats = false;          ///< may be given several times
-    std::string heading;           ///< under which the help shows it: "View"
+    bool repeats = false;  ///< may be given several times
+    std::string heading;   ///< under which the help shows it: "View"
 };
 
 struct Example {
@@ -32,14 +32,14 @@ struct Example {
 /// A subcommand: `run` is called with its parsed arguments and returns the exit code.
 struct Command {
     std::string name;
-    std::string summary;      ///< one line, no full stop
-    std::string description;  ///< a few sentences
-    std::string argument;     ///< the positional arguments as help shows them: "SCENE..."
+    std::string summary;              ///< one line, no full stop
+    std::string description;          ///< a few sentences
+    std::string argument;             ///< the positional arguments as help shows them: "SCENE..."
     std::size_t least = 0, most = 0;  ///< how many of them
     Completes completes = Completes::scene;
     std::vector<Option> options;
     std::vector<Example> examples;
-    std::string exit_codes;   ///< which codes it returns and when
+    std::string exit_codes;  ///< which codes it returns and when
     int (*run)(const Arguments&);
 };
 

@@ -7,8 +7,8 @@
 
 namespace etalon::cli {
 
-/// Refuses, before anything is rendered, an output that could not be written: an extension that is neither .png nor .exr,
-/// a folder in its place, a parent that is no folder or cannot be written to. Makes missing parent folders.
+/// Refuses, before anything is rendered, an output that could not be written: an extension that is neither .png nor
+/// .exr, a folder in its place, a parent that is no folder or cannot be written to. Makes missing parent folders.
 void check_output(const std::string& path);
 
 /// Writes the film as the extension says; "-" is PNG on standard output.

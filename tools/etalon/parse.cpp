@@ -10,7 +10,10 @@
 namespace etalon::cli {
 namespace {
 
-std::string see_help(const Command& command) { return fmt::format("see etalon {} --help", command.name); }
+std::string see_help(const Command& command)
+{
+    return fmt::format("see etalon {} --help", command.name);
+}
 
 [[noreturn]] void refuse_unknown(const Command& command, const std::string& word)
 {
@@ -26,7 +29,8 @@ void check_count(const Command& command, const std::vector<std::string>& positio
     if (positional.size() < command.least)
         throw Error(Blame::input, fmt::format("{} needs {}", command.name, command.argument), see_help(command));
     if (positional.size() > command.most)
-        throw Error(Blame::input, fmt::format("{} has no place for '{}'", command.name, positional[command.most]), see_help(command));
+        throw Error(Blame::input, fmt::format("{} has no place for '{}'", command.name, positional[command.most]),
+                    see_help(command));
 }
 
 /// CLI11 reports a missing value in words of its own; ours name the option and what it takes.
@@ -36,7 +40,8 @@ void check_values(const Command& command, const CLI::App& app)
         const CLI::Option& option = *app.get_option("--" + row.name);
         if (option.count() == 0 || row.argument.empty()) continue;
         if (!row.repeats && option.results().size() > 1)
-            throw Error(Blame::input, fmt::format("--{} is given {} times", row.name, option.results().size()), "give it once");
+            throw Error(Blame::input, fmt::format("--{} is given {} times", row.name, option.results().size()),
+                        "give it once");
     }
 }
 
@@ -49,8 +54,10 @@ Arguments parse(const Command& command, std::span<const std::string> words)
     app.allow_extras();
     for (const Option& row : command.options) {
         const std::string names = (row.letter != 0 ? fmt::format("-{},", row.letter) : "") + "--" + row.name;
-        if (row.argument.empty()) app.add_flag(names);
-        else app.add_option(names)->type_size(1)->expected(1)->take_all();
+        if (row.argument.empty())
+            app.add_flag(names);
+        else
+            app.add_option(names)->type_size(1)->expected(1)->take_all();
     }
     try {
         app.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // CLI11 wants the last word first
@@ -60,9 +67,12 @@ Arguments parse(const Command& command, std::span<const std::string> words)
     std::vector<std::string> positional;
     bool literal = false;  // after "--" a dash means nothing
     for (const std::string& word : app.remaining()) {
-        if (word == "--" && !literal) literal = true;
-        else if (!literal && word.size() > 1 && word.front() == '-') refuse_unknown(command, word);
-        else positional.push_back(word);
+        if (word == "--" && !literal)
+            literal = true;
+        else if (!literal && word.size() > 1 && word.front() == '-')
+            refuse_unknown(command, word);
+        else
+            positional.push_back(word);
     }
     check_values(command, app);
 

@@ -21,16 +21,24 @@ enum class Form { bar, plain, json, none };
 Form form_of(const Arguments& arguments, const Terminal& terminal)
 {
     switch (arguments.choice("progress")) {
-        case 1: return Form::bar;
-        case 2: return Form::plain;
-        case 3: return Form::json;
-        case 4: return Form::none;
-        default: return terminal.terminal ? Form::bar : Form::plain;
+        case 1:
+            return Form::bar;
+        case 2:
+            return Form::plain;
+        case 3:
+            return Form::json;
+        case 4:
+            return Form::none;
+        default:
+            return terminal.terminal ? Form::bar : Form::plain;
     }
 }
 
 /// Seconds between two showings of the same stage: often enough to look alive, rarely enough to cost nothing.
-double interval(Form form) { return form == Form::bar ? 0.1 : form == Form::json ? 0.5 : 5.0; }
+double interval(Form form)
+{
+    return form == Form::bar ? 0.1 : form == Form::json ? 0.5 : 5.0;
+}
 
 std::string details(const ProgressUpdate& update, double left)
 {
@@ -63,8 +71,8 @@ struct ProgressDisplay::State {
     {
         constexpr int kCells = 24;
         const int full = static_cast<int>(std::lround(std::clamp(update.fraction, 0.0, 1.0) * kCells));
-        std::string line = fmt::format("[{:=<{}}{: <{}}] {:3.0f}% {}: {}{}", "", full, "", kCells - full, update.fraction * 100, what,
-                                       update.stage, details(update, left));
+        std::string line = fmt::format("[{:=<{}}{: <{}}] {:3.0f}% {}: {}{}", "", full, "", kCells - full,
+                                       update.fraction * 100, what, update.stage, details(update, left));
         const auto columns = static_cast<std::size_t>(terminal.columns - 1);
         if (line.size() > columns) line.resize(columns);
         std::fprintf(stderr, "\r\033[K%s", line.c_str());
@@ -75,8 +83,14 @@ struct ProgressDisplay::State {
     static void show_json(const std::string& what, const ProgressUpdate& update, double elapsed, double left)
     {
         const std::optional<double> seconds_left = left > 0 ? std::optional(left) : std::nullopt;
-        say(Json::object({{"event", "progress"}, {"scene", what}, {"stage", update.stage}, {"fraction", update.fraction},
-                          {"samples", update.samples}, {"error", update.error}, {"elapsed_s", elapsed}, {"left_s", seconds_left}})
+        say(Json::object({{"event", "progress"},
+                          {"scene", what},
+                          {"stage", update.stage},
+                          {"fraction", update.fraction},
+                          {"samples", update.samples},
+                          {"error", update.error},
+                          {"elapsed_s", elapsed},
+                          {"left_s", seconds_left}})
                 .text());
     }
 
@@ -95,11 +109,16 @@ struct ProgressDisplay::State {
         last = now;
         const double elapsed = std::chrono::duration<double>(now - stage_start).count();
         // Under a tenth of a second or a thousandth of the work the estimate would be noise.
-        const double left = elapsed > 0.1 && update.fraction > 1e-3 && !finished ? elapsed * (1 / update.fraction - 1) : 0;
-        if (form == Form::bar) show_bar(what, update, left);
-        else if (form == Form::json) show_json(what, update, elapsed, left);
-        else if (new_stage && update.fraction <= 0) say(fmt::format("{}: {}", what, update.stage));
-        else say(fmt::format("{}: {} {:.0f}%{}", what, update.stage, update.fraction * 100, details(update, left)));
+        const double left =
+            elapsed > 0.1 && update.fraction > 1e-3 && !finished ? elapsed * (1 / update.fraction - 1) : 0;
+        if (form == Form::bar)
+            show_bar(what, update, left);
+        else if (form == Form::json)
+            show_json(what, update, elapsed, left);
+        else if (new_stage && update.fraction <= 0)
+            say(fmt::format("{}: {}", what, update.stage));
+        else
+            say(fmt::format("{}: {} {:.0f}%{}", what, update.stage, update.fraction * 100, details(update, left)));
     }
 };
 
@@ -108,7 +127,10 @@ ProgressDisplay::ProgressDisplay(const Arguments& arguments) : state_(std::make_
     state_->form = form_of(arguments, state_->terminal);
 }
 
-ProgressDisplay::~ProgressDisplay() { clear(); }
+ProgressDisplay::~ProgressDisplay()
+{
+    clear();
+}
 
 Progress ProgressDisplay::progress(const std::string& what, const std::atomic<bool>* stop)
 {

@@ -7,10 +7,10 @@
 
 namespace etalon::cli {
 
-/// Shows a job on standard error as --progress asks: a bar with time left and error so far that is wiped when done, plain
-/// lines (each stage, then every few seconds), JSON lines, or nothing. One job at a time.
+/// Shows a job on standard error as --progress asks: a bar with time left and error so far that is wiped when done,
+/// plain lines (each stage, then every few seconds), JSON lines, or nothing. One job at a time.
 class ProgressDisplay {
-   public:
+ public:
     explicit ProgressDisplay(const Arguments& arguments);
     ~ProgressDisplay();
     ProgressDisplay(const ProgressDisplay&) = delete;
@@ -21,7 +21,7 @@ class ProgressDisplay {
     /// Takes the bar off the screen, so that a line can be said.
     void clear();
 
-   private:
+ private:
     struct State;
     std::unique_ptr<State> state_;
 };

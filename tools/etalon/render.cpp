@@ -27,7 +27,8 @@ struct Job {
 std::vector<Job> plan(const Arguments& arguments)
 {
     const std::vector<std::string> patterns = arguments.all("output");
-    if (patterns.empty()) throw Error(Blame::input, "render needs to know where to write", "add -o FILE.png, -o FILE.exr or -o -");
+    if (patterns.empty())
+        throw Error(Blame::input, "render needs to know where to write", "add -o FILE.png, -o FILE.exr or -o -");
     std::vector<Job> jobs;
     std::set<std::string> taken;
     for (const std::string& scene : arguments.positional()) {
@@ -62,26 +63,40 @@ void tell(const Job& job, const Picture& picture, const RenderSettings& settings
     const Film& film = picture.film;
     const std::string samples = film.samples > 1 ? fmt::format(", {} spp", film.samples) : "";
     for (const std::string& output : job.outputs)
-        say(fmt::format("{}: {}x{}, {}{}, {}; error {}", output == "-" ? "standard output" : output, film.width, film.height, label(settings.renderer),
-                        samples, describe_seconds(picture.seconds.render), describe_error(estimate_error(film))));
+        say(fmt::format("{}: {}x{}, {}{}, {}; error {}", output == "-" ? "standard output" : output, film.width,
+                        film.height, label(settings.renderer), samples, describe_seconds(picture.seconds.render),
+                        describe_error(estimate_error(film))));
 }
 
-Json as_json(const Job& job, const Picture& picture, const RenderSettings& settings, const std::vector<std::string>& findings)
+Json as_json(const Job& job, const Picture& picture, const RenderSettings& settings,
+             const std::vector<std::string>& findings)
 {
     const Film& film = picture.film;
     Json error;
     if (const auto estimate = estimate_error(film))
         error = Json::object({{"relative", estimate->relative}, {"low", estimate->low}, {"high", estimate->high}});
     const Seconds& s = picture.seconds;
-    return Json::object({{"scene", job.scene}, {"outputs", job.outputs}, {"renderer", name(settings.renderer)},
-                         {"device", film.metadata.at("device")}, {"width", film.width}, {"height", film.height}, {"samples", film.samples},
-                         {"seed", settings.seed}, {"error", error}, {"error_text", describe_error(estimate_error(film))},
-                         {"nonfinite_samples", film.nonfinite}, {"truncated_paths", film.truncated}, {"findings", findings},
-                         {"notes", picture.notes}, {"interrupted", picture.interrupted},
-                         {"seconds", Json::object({{"load", s.load}, {"pose", s.pose}, {"render", s.render}, {"write", s.write}})}});
+    return Json::object(
+        {{"scene", job.scene},
+         {"outputs", job.outputs},
+         {"renderer", name(settings.renderer)},
+         {"device", film.metadata.at("device")},
+         {"width", film.width},
+         {"height", film.height},
+         {"samples", film.samples},
+         {"seed", settings.seed},
+         {"error", error},
+         {"error_text", describe_error(estimate_error(film))},
+         {"nonfinite_samples", film.nonfinite},
+         {"truncated_paths", film.truncated},
+         {"findings", findings},
+         {"notes", picture.notes},
+         {"interrupted", picture.interrupted},
+         {"seconds", Json::object({{"load", s.load}, {"pose", s.pose}, {"render", s.render}, {"write", s.write}})}});
 }
 
-Picture make(const Job& job, const Arguments& arguments, const RenderSettings& settings, Renderers& renderers, const Progress& progress)
+Picture make(const Job& job, const Arguments& arguments, const RenderSettings& settings, Renderers& renderers,
+             const Progress& progress)
 {
     Picture picture;
     Stopwatch stopwatch;
@@ -119,11 +134,13 @@ int render(const Arguments& arguments)
     bool suspicious = false;
     for (const Job& job : jobs) {
         ProgressDisplay display(arguments);
-        Picture picture = make(job, arguments, settings, renderers, display.progress(short_name(job.scene), interrupt.flag()));
+        Picture picture =
+            make(job, arguments, settings, renderers, display.progress(short_name(job.scene), interrupt.flag()));
         display.clear();
         for (const std::string& note : picture.notes) say(fmt::format("{}: {}", job.scene, note));
         if (picture.film.samples == 0) {
-            warn(terminal, fmt::format("{}: interrupted before the first pass was done; nothing was written", job.scene));
+            warn(terminal,
+                 fmt::format("{}: interrupted before the first pass was done; nothing was written", job.scene));
             break;
         }
         write(job, picture, develop);

@@ -13,7 +13,10 @@
 namespace etalon::cli {
 namespace {
 
-bool needs_device(Renderer renderer) { return renderer == Renderer::raster || renderer == Renderer::path; }
+bool needs_device(Renderer renderer)
+{
+    return renderer == Renderer::raster || renderer == Renderer::path;
+}
 
 std::string describe(const dmat4& m)
 {
@@ -37,8 +40,9 @@ void describe(Film& film, const PosedScene& posed, const RenderSettings& setting
     data["samples"] = fmt::format("{}", film.samples);
     const dvec3 b = settings.background_color;
     std::string& text = data["settings"];
-    text = fmt::format("size={}x{} seed={} shading={} background={} background-color={},{},{}", posed.view.width, posed.view.height, settings.seed,
-                       kShadings[static_cast<int>(settings.shading)], kBackgrounds[static_cast<int>(settings.background)], b.x, b.y, b.z);
+    text = fmt::format("size={}x{} seed={} shading={} background={} background-color={},{},{}", posed.view.width,
+                       posed.view.height, settings.seed, kShadings[static_cast<int>(settings.shading)],
+                       kBackgrounds[static_cast<int>(settings.background)], b.x, b.y, b.z);
     for (const Knob& knob : knobs())
         if (knob.metric != KnobMetric::none) text += fmt::format(" {}={}", knob.name, knob_value(settings, knob.name));
     data["world_from_camera"] = describe(posed.view.world_from_camera);
@@ -55,16 +59,25 @@ gpu::Device& Renderers::device()
     return *device_;
 }
 
-Film Renderers::draw(const std::string& scene_name, const PosedScene& posed, const RenderSettings& settings, const Progress& progress)
+Film Renderers::draw(const std::string& scene_name, const PosedScene& posed, const RenderSettings& settings,
+                     const Progress& progress)
 {
     const Requirements required = require(posed, settings);
     Film film;
     try {
         switch (settings.renderer) {
-            case Renderer::raster: film = render_raster(device(), posed, required, settings, progress); break;
-            case Renderer::path: film = render_path(device(), posed, required, settings, progress); break;
-            case Renderer::reference: film = reference::render_path(posed, required, settings, progress); break;
-            case Renderer::reference_raster: film = reference::render_raster(posed, required, settings, progress); break;
+            case Renderer::raster:
+                film = render_raster(device(), posed, required, settings, progress);
+                break;
+            case Renderer::path:
+                film = render_path(device(), posed, required, settings, progress);
+                break;
+            case Renderer::reference:
+                film = reference::render_path(posed, required, settings, progress);
+                break;
+            case Renderer::reference_raster:
+                film = reference::render_raster(posed, required, settings, progress);
+                break;
         }
     } catch (Error& error) {
         error.at(fmt::format("{}, {}", scene_name, label(settings.renderer)));
@@ -86,17 +99,23 @@ void Renderers::check_validation() const
     if (!device_ || !device_->validating()) return;
     const std::vector<std::string> messages = device_->validation_messages();
     if (messages.empty()) return;
-    throw Error(Blame::machine, fmt::format("the Vulkan validation layers found {} faults; the first: {}", messages.size(), messages.front()),
-                "this is a fault of etalon or of the driver: please report it with the output of `etalon info`");
+    throw Error(
+        Blame::machine,
+        fmt::format("the Vulkan validation layers found {} faults; the first: {}", messages.size(), messages.front()),
+        "this is a fault of etalon or of the driver: please report it with the output of `etalon info`");
 }
 
 std::string_view name(Renderer renderer)
 {
     switch (renderer) {
-        case Renderer::raster: return "raster";
-        case Renderer::path: return "path";
-        case Renderer::reference: return "reference";
-        case Renderer::reference_raster: return "reference-raster";
+        case Renderer::raster:
+            return "raster";
+        case Renderer::path:
+            return "path";
+        case Renderer::reference:
+            return "reference";
+        case Renderer::reference_raster:
+            return "reference-raster";
     }
     return {};
 }
@@ -104,10 +123,14 @@ std::string_view name(Renderer renderer)
 std::string_view label(Renderer renderer)
 {
     switch (renderer) {
-        case Renderer::raster: return "Vulkan rasterizer";
-        case Renderer::path: return "Vulkan path tracer";
-        case Renderer::reference: return "reference path tracer";
-        case Renderer::reference_raster: return "reference rasterizer";
+        case Renderer::raster:
+            return "Vulkan rasterizer";
+        case Renderer::path:
+            return "Vulkan path tracer";
+        case Renderer::reference:
+            return "reference path tracer";
+        case Renderer::reference_raster:
+            return "reference rasterizer";
     }
     return {};
 }
@@ -115,7 +138,8 @@ std::string_view label(Renderer renderer)
 std::string describe_error(const std::optional<ErrorEstimate>& error)
 {
     if (!error) return "not measured";
-    return fmt::format("{:.3g}% (95% interval {:.3g}% to {:.3g}%)", error->relative * 100, error->low * 100, error->high * 100);
+    return fmt::format("{:.3g}% (95% interval {:.3g}% to {:.3g}%)", error->relative * 100, error->low * 100,
+                       error->high * 100);
 }
 
 }  // namespace etalon::cli

@@ -13,11 +13,12 @@ namespace etalon::cli {
 
 /// The renderers behind one call, and the device that two of them need: made at first use, kept for all later scenes.
 class Renderers {
-   public:
+ public:
     explicit Renderers(const Arguments& arguments);
 
     /// Film::metadata gets scene, renderer, settings, seed, version and device.
-    Film draw(const std::string& scene_name, const PosedScene& posed, const RenderSettings& settings, const Progress& progress);
+    Film draw(const std::string& scene_name, const PosedScene& posed, const RenderSettings& settings,
+              const Progress& progress);
 
     /// "CPU, double precision" for the references, else what Vulkan device it is.
     std::string device_of(Renderer renderer);
@@ -25,7 +26,7 @@ class Renderers {
     /// With --validate: throws Error(machine) quoting what the validation layers said, if anything.
     void check_validation() const;
 
-   private:
+ private:
     gpu::Device& device();
 
     gpu::DeviceOptions options_;

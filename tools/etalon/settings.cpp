@@ -50,7 +50,8 @@ std::optional<Orbit> parse_orbit(const Arguments& arguments)
 void read_environment(const Arguments& arguments, PoseSettings& settings)
 {
     const std::optional<std::string> value = arguments.text("environment");
-    if (value == "none") settings.no_environment = true;
+    if (value == "none")
+        settings.no_environment = true;
     else if (value) {
         auto map = std::make_shared<Image>(read_image(*value));
         settings.environment = Environment{.map = std::move(map)};
@@ -62,12 +63,15 @@ void read_environment(const Arguments& arguments, PoseSettings& settings)
 void read_background(const Arguments& arguments, RenderSettings& settings)
 {
     const std::string value = arguments.text("background").value_or("environment");
-    if (value == "environment") settings.background = Background::environment;
-    else if (value == "transparent") settings.background = Background::transparent;
+    if (value == "environment")
+        settings.background = Background::environment;
+    else if (value == "transparent")
+        settings.background = Background::transparent;
     else if (const auto colour = parse_colour(value)) {
         settings.background = Background::colour;
         settings.background_color = *colour;
-    } else refuse("background", value, "transparent, environment, #rrggbb or r,g,b");
+    } else
+        refuse("background", value, "transparent, environment, #rrggbb or r,g,b");
 }
 
 }  // namespace
@@ -98,7 +102,8 @@ PoseSettings pose_settings(const Arguments& arguments)
     if (const auto root = arguments.count("scene", 0, kNone - 1)) settings.root = static_cast<Index>(*root);
     settings.camera = arguments.text("camera");
     settings.orbit = parse_orbit(arguments);
-    if (settings.camera && settings.orbit) throw Error(Blame::input, "--camera and --orbit exclude each other", "give one of them");
+    if (settings.camera && settings.orbit)
+        throw Error(Blame::input, "--camera and --orbit exclude each other", "give one of them");
     settings.size = parse_size(arguments);
     read_environment(arguments, settings);
     return settings;
@@ -110,7 +115,8 @@ RenderSettings render_settings(const Arguments& arguments)
     constexpr Shading kShadings[] = {Shading::automatic, Shading::blinn_phong, Shading::pbr};
     settings.shading = kShadings[arguments.choice("shading")];
     if (find_option(arguments.command(), "renderer") != nullptr) {
-        constexpr Renderer kRenderers[] = {Renderer::raster, Renderer::path, Renderer::reference, Renderer::reference_raster};
+        constexpr Renderer kRenderers[] = {Renderer::raster, Renderer::path, Renderer::reference,
+                                           Renderer::reference_raster};
         settings.renderer = kRenderers[arguments.choice("renderer")];
     }
     settings.seed = arguments.count("seed", 0, ~std::uint64_t{0}).value_or(0);

@@ -5,7 +5,7 @@ namespace etalon::cli {
 
 /// Seconds since it was made or last read.
 class Stopwatch {
-   public:
+ public:
     double lap()
     {
         const auto now = std::chrono::steady_clock::now();
@@ -14,7 +14,7 @@ class Stopwatch {
         return seconds;
     }
 
-   private:
+ private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 

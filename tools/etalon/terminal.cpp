@@ -22,7 +22,10 @@ bool is_set(const char* variable)
     return value != nullptr && *value != '\0';
 }
 
-void write_stderr(std::string_view text) { std::fwrite(text.data(), 1, text.size(), stderr); }
+void write_stderr(std::string_view text)
+{
+    std::fwrite(text.data(), 1, text.size(), stderr);
+}
 
 void write_stdout(const char* data, std::size_t size)
 {
@@ -57,9 +60,15 @@ void warn(const Terminal& terminal, std::string_view line)
     say(fmt::format("{} {}", terminal.colour ? "\033[33mwarning:\033[0m" : "warning:", line));
 }
 
-void put(std::string_view text) { write_stdout(text.data(), text.size()); }
+void put(std::string_view text)
+{
+    write_stdout(text.data(), text.size());
+}
 
-void put(std::span<const std::byte> bytes) { write_stdout(reinterpret_cast<const char*>(bytes.data()), bytes.size()); }
+void put(std::span<const std::byte> bytes)
+{
+    write_stdout(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+}
 
 std::string describe_seconds(double seconds)
 {

@@ -1,0 +1,156 @@
+#include "tools/etalon/option_rows.h"
+
+#include "tools/etalon/knob_options.h"
+
+namespace etalon::cli {
+
+const Rows& view_rows()
+{
+    static const Rows rows = {
+        {.name = "size",
+         .argument = "WxH",
+         .help = "Picture size in pixels; the scene's own hint or 1280x720 when absent",
+         .heading = "View"},
+        {.name = "scene",
+         .argument = "N",
+         .help = "Which of the file's scenes, from 0; the file's default when absent",
+         .heading = "View"},
+        {.name = "camera",
+         .argument = "NAME|INDEX",
+         .help = "Which camera; the first when absent, framed when there is none",
+         .heading = "View"},
+        {.name = "orbit",
+         .argument = "AZ,EL[,DIST]",
+         .help = "Look at the scene's centre from this azimuth and elevation in degrees, this far in metres",
+         .heading = "View"},
+    };
+    return rows;
+}
+
+const Rows& light_rows()
+{
+    static const Rows rows = {
+        {.name = "environment",
+         .argument = "FILE|none",
+         .help = "Equirectangular EXR or HDR that replaces the scene's environment",
+         .completes = Completes::file,
+         .heading = "Light"},
+        {.name = "environment-rotation",
+         .argument = "D",
+         .help = "Turn the environment about the vertical by D degrees",
+         .standard = "0",
+         .heading = "Light"},
+        {.name = "environment-intensity",
+         .argument = "X",
+         .help = "Multiply the environment's radiance by X",
+         .standard = "1",
+         .heading = "Light"},
+        {.name = "background",
+         .argument = "transparent|COLOUR|environment",
+         .help = "What shows where nothing is hit; COLOUR is #rrggbb (sRGB) or r,g,b (linear)",
+         .standard = "environment",
+         .heading = "Light"},
+    };
+    return rows;
+}
+
+const Rows& shading_rows()
+{
+    static const Rows rows = {
+        {.name = "shading",
+         .argument = "MODEL",
+         .help = "Shading model",
+         .standard = "auto",
+         .choices = {"auto", "blinn-phong", "pbr"},
+         .heading = "Light"},
+    };
+    return rows;
+}
+
+const Rows& sampling_rows()
+{
+    static const Rows rows = [] {
+        Rows all = knob_rows();
+        all.push_back({.name = "seed",
+                       .argument = "S",
+                       .help = "Seed of the random numbers: same seed, device and build, same bits",
+                       .standard = "0",
+                       .heading = "Speed and accuracy"});
+        return all;
+    }();
+    return rows;
+}
+
+const Rows& develop_rows()
+{
+    static const Rows rows = {
+        {.name = "exposure",
+         .argument = "EV",
+         .help = "Multiply radiance by 2^EV before it becomes a picture",
+         .standard = "0",
+         .heading = "Picture"},
+        {.name = "tone",
+         .argument = "CURVE",
+         .help = "Curve from radiance to the display",
+         .standard = "none",
+         .choices = {"none", "aces", "neutral"},
+         .heading = "Picture"},
+    };
+    return rows;
+}
+
+const Rows& device_rows()
+{
+    static const Rows rows = {
+        {.name = "device",
+         .argument = "N|NAME",
+         .help = "Vulkan device by its number in `etalon info` or part of its name",
+         .heading = "Device"},
+        {.name = "require-device",
+         .argument = "KIND",
+         .help = "Fail with exit code 3 unless the device is of this kind",
+         .choices = {"cpu", "gpu"},
+         .heading = "Device"},
+        {.name = "validate",
+         .help = "Run under the Vulkan validation layers; any message of theirs is an error",
+         .heading = "Device"},
+    };
+    return rows;
+}
+
+const Rows& load_rows()
+{
+    static const Rows rows = {
+        {.name = "strict", .help = "Warnings about the scene or the picture become errors", .heading = "Behaviour"},
+    };
+    return rows;
+}
+
+const Rows& json_rows()
+{
+    static const Rows rows = {
+        {.name = "json", .help = "Print the result, or the error, as JSON on standard output", .heading = "Behaviour"},
+    };
+    return rows;
+}
+
+const Rows& progress_rows()
+{
+    static const Rows rows = {
+        {.name = "progress",
+         .argument = "FORM",
+         .help = "How progress is shown on standard error: auto is a bar on a terminal, lines elsewhere",
+         .standard = "auto",
+         .choices = {"auto", "bar", "plain", "json", "none"},
+         .heading = "Behaviour"},
+    };
+    return rows;
+}
+
+const Rows& help_rows()
+{
+    static const Rows rows = {{.name = "help", .letter = 'h', .help = "Show this help", .heading = "Behaviour"}};
+    return rows;
+}
+
+}  // namespace etalon::cli
