@@ -7,7 +7,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
-#include "engine/render/resample.h"
+#include "engine/image/mips.h"
 
 namespace etalon {
 namespace {
@@ -143,45 +143,12 @@ void put(Image& atlas, int x, int y, const dvec3& value)
 
 }  // namespace
 
-Image area_average(const Image& map, int width, int height, unsigned threads)
-{
-    assume(map.width > 0 && map.height > 0 && map.channels >= 3 && width > 0 && height > 0);
-    const std::vector<Coverage> columns = coverages(map.width, width);
-    const std::vector<Coverage> rows = coverages(map.height, height);
-    Image out(width, height, map.channels);
-    parallel_for(
-        static_cast<std::size_t>(height),
-        [&](std::size_t y) {
-            const Coverage& row = rows[y];
-            std::vector<double> sums(static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.channels));
-            for (std::size_t k = 0; k < row.weights.size(); ++k) {
-                const float* source = map.values.data() + (static_cast<std::size_t>(row.first) + k) * sums.size();
-                for (std::size_t i = 0; i < sums.size(); ++i)
-                    sums[i] += row.weights[k] * static_cast<double>(source[i]);
-            }
-            for (int x = 0; x < width; ++x) {
-                const Coverage& column = columns[static_cast<std::size_t>(x)];
-                for (int c = 0; c < map.channels; ++c) {
-                    double sum = 0;
-                    for (std::size_t k = 0; k < column.weights.size(); ++k) {
-                        const std::size_t texel = static_cast<std::size_t>(column.first) + k;
-                        sum += column.weights[k] *
-                               sums[texel * static_cast<std::size_t>(map.channels) + static_cast<std::size_t>(c)];
-                    }
-                    out.at(x, static_cast<int>(y), c) = static_cast<float>(sum);
-                }
-            }
-        },
-        threads);
-    return out;
-}
-
 EnvironmentTables tabulate(const Image& map, unsigned threads)
 {
     using Tables = EnvironmentTables;
-    const Image source = area_average(map, kSourceWidth, kSourceHeight, threads);
-    const Image mirror =
-        area_average(map, std::min(map.width, kMirrorWidth), std::min(map.height, kMirrorHeight), threads);
+    assume(map.width > 0 && map.height > 0 && map.channels >= 3);
+    const Image source = shrink(map, kSourceWidth, kSourceHeight, threads);
+    const Image mirror = shrink(map, std::min(map.width, kMirrorWidth), std::min(map.height, kMirrorHeight), threads);
     Tables tables{.irradiance = irradiance_of(source),
                   .atlas = Image(std::max(mirror.width, Tables::kTableWidth),
                                  mirror.height + Tables::kRoughTables * Tables::kTableHeight, 4),

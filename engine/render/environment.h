@@ -5,10 +5,6 @@
 
 namespace etalon {
 
-/// The exact average of `map` over each texel of a width × height map of the same picture: its texels are taken as
-/// constant squares in (u, v), each source row weighted alike (SH-41). Larger sizes repeat texels.
-Image area_average(const Image& map, int width, int height, unsigned threads = 0);
-
 /// Irradiance of a distant environment as a quadratic in the normal, nit·sr (SH-33):
 /// E(n) = c₀ + c₁y + c₂z + c₃x + c₄xy + c₅yz + c₆(3z² − 1) + c₇xz + c₈(x² − y²), which may dip below 0: clamp it.
 /// Ramamoorthi & Hanrahan 2001, with the normalization of the harmonics and A_l folded into the coefficients.

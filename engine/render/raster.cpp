@@ -363,6 +363,7 @@ void RasterScene::draw_mesh(gpu::Commands& commands, const View& view, const Ite
     const RasterGeometry::Range& range = geometry_.range(draw);
     shared::RasterDraw record{.object_rows = {},
                               .normal_matrix = mat3(1),
+                              .handedness = 1,
                               .material = item.material,
                               .object_id = item.index + 1,
                               .first_face = range.first_face};

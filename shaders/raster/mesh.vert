@@ -26,7 +26,7 @@ void main()
     out_position = vec3(dot(draw.object_rows[0], p), dot(draw.object_rows[1], p), dot(draw.object_rows[2], p));
     out_normal = draw.normal_matrix * normal;
     out_tangent = vec4(dot(draw.object_rows[0].xyz, tangent.xyz), dot(draw.object_rows[1].xyz, tangent.xyz),
-                       dot(draw.object_rows[2].xyz, tangent.xyz), tangent.w);
+                       dot(draw.object_rows[2].xyz, tangent.xyz), tangent.w * draw.handedness);
     out_uv = vec4(uv0, uv1);
     out_color = color;
     gl_Position = frame.clip_from_world * vec4(out_position, 1.0);

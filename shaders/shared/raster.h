@@ -38,6 +38,7 @@ struct EmitterRecord {
 struct RasterDraw {
     vec4 object_rows[3];  // rows of camera-relative world from object
     mat3 normal_matrix;   // sign(det M) cofactor(M) (SH-2)
+    float handedness;     // sign(det M): a mirror turns bitangents over
     uint material;        // index of its MaterialRecord
     uint object_id;       // AOV
     uint first_face;      // of this primitive among the face normals
@@ -55,7 +56,7 @@ ETALON_SHARED_END
 #ifdef __cplusplus
 static_assert(sizeof(etalon::shared::RasterFrame) == 64 + 36 + 108 + 12 + 8 + 4 + 8 + 8 + 8 + 8 + 8);
 static_assert(sizeof(etalon::shared::EmitterRecord) == 48);
-static_assert(sizeof(etalon::shared::RasterDraw) == 48 + 36 + 12);
+static_assert(sizeof(etalon::shared::RasterDraw) == 48 + 36 + 16);
 static_assert(sizeof(etalon::shared::RasterSphere) == 24);
 #endif
 #endif
