@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 
 #include <charconv>
-#include <memory>
 
 #include "engine/base/error.h"
-#include "engine/image/io.h"
+#include "engine/scene/environment.h"
 #include "tools/etalon/knob_options.h"
 
 namespace etalon::cli {
@@ -52,10 +51,7 @@ void read_environment(const Arguments& arguments, PoseSettings& settings)
     const std::optional<std::string> value = arguments.text("environment");
     if (value == "none")
         settings.no_environment = true;
-    else if (value) {
-        auto map = std::make_shared<Image>(read_image(*value));
-        settings.environment = Environment{.map = std::move(map)};
-    }
+    else if (value) settings.environment = read_environment(*value);
     settings.environment_rotation = arguments.number("environment-rotation", -1e6, 1e6).value_or(0);
     settings.environment_intensity = arguments.number("environment-intensity", 0, 1e9).value_or(1);
 }
