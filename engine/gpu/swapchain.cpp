@@ -65,6 +65,7 @@ void destroy_semaphore(const DeviceState& state, VkSemaphore semaphore)
 Swapchain::Swapchain(Device& device, std::uint32_t width, std::uint32_t height) : device_(device)
 {
     assume(device.surface() != VK_NULL_HANDLE);
+    format_ = pick_format(device.state()).format;
     resize(width, height);
 }
 

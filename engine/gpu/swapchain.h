@@ -26,6 +26,7 @@ class Swapchain {
     /// After the window changed size, or draw() said false. Does nothing while the window has no area.
     void resize(std::uint32_t width, std::uint32_t height);
 
+    VkFormat format() const { return format_; }
     std::uint32_t width() const { return width_; }
     std::uint32_t height() const { return height_; }
 
@@ -39,6 +40,7 @@ class Swapchain {
     std::vector<Owned<VkSemaphore, destroy_semaphore>> drawn_;  // one per image: presentation waits for it
     std::vector<Frame> frames_;
     std::size_t next_frame_ = 0;
+    VkFormat format_ = VK_FORMAT_UNDEFINED;
     std::uint32_t width_ = 0;
     std::uint32_t height_ = 0;
 };
