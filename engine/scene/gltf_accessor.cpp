@@ -85,6 +85,10 @@ Elements elements(const Source& source, int view_index, std::size_t offset, std:
 {
     const auto& view = source.model.bufferViews.at(static_cast<std::size_t>(view_index));
     const auto& buffer = source.file.buffers.at(static_cast<std::size_t>(view.buffer)).bytes;
+    if (buffer.size() < view.byteOffset + view.byteLength)
+        throw fault(fmt::format("/bufferViews/{}", view_index),
+                    fmt::format("buffer {} has no data in this file [BUFFER_MISSING_GLB_DATA]", view.buffer),
+                    "export again; a buffer without uri needs the binary chunk of a .glb");
     return {buffer.subspan(view.byteOffset, view.byteLength).subspan(offset),
             view.byteStride == 0 ? packed : view.byteStride};
 }

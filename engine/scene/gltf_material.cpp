@@ -118,7 +118,7 @@ class Materials {
         Material out;
         out.name = in.name;
         out.double_sided = in.doubleSided;
-        out.emission = vector(in.emissiveFactor, pointer + "/emissiveFactor");
+        out.emission = emission(in.emissiveFactor, pointer + "/emissiveFactor");
         alpha(in, pointer, out);
         const auto& pbr = in.pbrMetallicRoughness;
         const std::string at = pointer + "/pbrMetallicRoughness";
@@ -145,19 +145,28 @@ class Materials {
         scene_.materials.push_back(std::move(out));
     }
 
-    static double unit(double value, const std::string& pointer)
+    // Factors are within [0, 1]; what is outside is drawn clamped, as other readers do, and said.
+    double unit(double value, const std::string& pointer)
     {
-        if (!(value >= 0 && value <= 1))
-            throw fault(pointer, fmt::format("{} is not from 0 to 1 [VALUE_NOT_IN_RANGE]", value));
-        return value;
+        const double clamped = std::min(std::max(value, 0.0), 1.0);
+        if (clamped != value)
+            scene_.warnings.push_back(
+                fmt::format("{}: {} is taken as {} [VALUE_NOT_IN_RANGE]", pointer, value, clamped));
+        return clamped;
     }
 
-    static dvec3 vector(const std::vector<double>& values, const std::string& pointer)
+    // Exporters write emission above 1 here, which KHR_materials_emissive_strength would say: it is meant, so it is
+    // kept.
+    dvec3 emission(const std::vector<double>& values, const std::string& pointer)
     {
         if (values.empty()) return dvec3(0);
         if (values.size() != 3) throw fault(pointer, "not three numbers [ARRAY_LENGTH_NOT_IN_LIST]");
-        for (const double value : values) unit(value, pointer);
-        return dvec3(values[0], values[1], values[2]);
+        const dvec3 out(values[0], values[1], values[2]);
+        for (const double value : values)
+            if (!(value >= 0 && value <= kHuge)) throw fault(pointer, fmt::format("{} [VALUE_NOT_IN_RANGE]", value));
+        if (std::max({out.x, out.y, out.z}) > 1)
+            scene_.warnings.push_back(pointer + ": above 1, and taken as it is [VALUE_NOT_IN_RANGE]");
+        return out;
     }
 
     static void alpha(const tinygltf::Material& in, const std::string& pointer, Material& out)
@@ -244,6 +253,8 @@ class Materials {
         parallel_for(used_images_.size(), [&](std::size_t i) {
             const GltfImage& in = source_.file.images[used_images_[i]];
             try {
+                if (in.bytes && in.bytes->empty())
+                    throw Error(Blame::input, "its buffer has no data in this file [BUFFER_MISSING_GLB_DATA]");
                 scene_.images[i] = in.bytes ? decode_texels(*in.bytes, in.name)
                                             : decode_texels(read_uri(in.uri, source_.folder, kMaxImageBytes), in.name);
             } catch (Error& error) {

@@ -16,7 +16,9 @@ Model parse_model(const std::string& json)
     tinygltf::TinyGLTF parser;
     if (!parser.LoadASCIIFromString(&model, &error, &warning, json.c_str(), static_cast<unsigned int>(json.size()), "",
                                     tinygltf::NO_REQUIRE))
-        throw Error(Blame::input, "the glTF document is malformed: " + error.substr(0, error.find('\n')),
+        throw Error(Blame::input,
+                    "the glTF document is malformed: " +
+                        (error.empty() ? "an object lacks what it must have" : error.substr(0, error.find('\n'))),
                     "export again");
     return model;
 }
