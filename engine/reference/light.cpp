@@ -82,7 +82,7 @@ Incident incident(const PosedLight& posed, const dvec3& p)  // (SH-22)
     out.wi = to_light / out.distance;
     double attenuation = 1;
     if (light.type == LightType::spot) {
-        const double scale = 1 / std::max(0.001, std::cos(light.inner_cone) - std::cos(light.outer_cone));
+        const double scale = 1 / std::max(1e-6, std::cos(light.inner_cone) - std::cos(light.outer_cone));
         const double offset = -std::cos(light.outer_cone) * scale;
         const double inside = std::clamp(dot(posed.direction, -out.wi) * scale + offset, 0.0, 1.0);
         attenuation *= inside * inside;

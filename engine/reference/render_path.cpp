@@ -101,7 +101,7 @@ Film render_path(const PosedScene& posed, const Requirements& required, const Re
         if (seconds < kSecondsPerPass / 2) count *= 2;
         progress.report({.stage = "path tracing",
                          .fraction = static_cast<double>(picture.samples()) / static_cast<double>(settings.spp),
-                         .error = relative_error(picture.sums()),
+                         .error = picture.samples() < 2 ? std::nullopt : std::optional(relative_error(picture.sums())),
                          .samples = picture.samples()});
     }
     Film film = film_of(picture.sums(), posed.view.width, posed.view.height, picture.samples());

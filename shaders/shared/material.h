@@ -62,7 +62,7 @@ struct LightRecord {
     vec3 position;  // metres, camera-relative
     float range;    // metres; 0: unlimited
     vec3 direction; // in which the light travels, unit
-    float spot_scale;   // 1 / max(0.001, cos(inner) - cos(outer))
+    float spot_scale;   // 1 / max(1e-6, cos(inner) - cos(outer))
     float spot_offset;  // -cos(outer) * spot_scale
 };
 
