@@ -1,0 +1,451 @@
+#include "engine/render/path.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "engine/base/error.h"
+#include "engine/render/path_kernels.h"
+#include "engine/render/render.h"
+
+namespace etalon {
+namespace {
+
+using gpu::Commands;
+using gpu::Work;
+using shared::PathPush;
+
+/// Paths in flight at once: more hide the cost of a dispatch (some 20 µs on software devices), fewer stay in its
+/// caches.
+constexpr std::uint32_t kWaveCapacity = 1u << 17;
+constexpr std::uint32_t kSmallestWave = 1u << 12;
+/// Device time that a step aims at: far below any watchdog, short enough that stopping feels immediate.
+constexpr double kStepSeconds = 0.05;
+/// Segments traced by one submission at most, so that a deep path does not make a long one.
+constexpr std::uint32_t kSegmentsPerSubmit = 16;
+/// Samples a pixel that are summed in float before they are merged in double (M1); counts of a block fit 16 bits.
+constexpr std::uint32_t kBlockSamples = 256;
+constexpr std::uint32_t kBandPixels = 1u << 22;
+constexpr std::uint32_t kMostDepth = 1u << 16;
+
+double seconds_since(std::chrono::steady_clock::time_point start)
+{
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace
+
+struct PathTracer::State {
+    gpu::Device* device;
+    bool wants_aovs;
+    PathScene scene;
+    PathKernels kernels;
+    PathQueues queues;
+    gpu::Buffer frame;
+    gpu::Buffer aovs;
+    std::vector<PathBand> bands;
+    std::uint32_t width = 0, height = 0;
+    std::uint32_t wave = kWaveCapacity / 2;  ///< paths of the next wave, adapted to the scene's speed
+
+    FilmSum total{1, 1};                         ///< of completed blocks
+    std::uint64_t nonfinite = 0, truncated = 0;  ///< of completed blocks
+    std::uint64_t first_of_block = 0;            ///< sample number
+    std::uint32_t in_block = 0;                  ///< samples of completed passes of this block
+
+    std::uint32_t in_pass = 0;  ///< samples a pixel of the pass at hand; 0: none
+    std::size_t band = 0;       ///< where the pass at hand stands
+    std::uint32_t next_slot = 0;
+    std::uint64_t slots_done = 0;
+
+    bool timing = false;
+    std::vector<KernelTime> times;
+
+    State(gpu::Device& d, const PosedScene& posed, const Requirements& required, const RenderSettings& settings,
+          const Progress& progress)
+        : device(&d),
+          wants_aovs(settings.aovs),
+          scene(make_path_scene(d, posed, required, settings, progress)),
+          kernels(make_path_kernels(d, scene)),
+          frame(d, {.size = sizeof(shared::PathFrame), .name = "path frame"})
+    {
+        scene.frame.max_depth = std::min(scene.frame.max_depth, kMostDepth);
+        queues = make_path_queues(d, kWaveCapacity, scene.frame.max_depth);
+    }
+
+    void resize(const View& view);
+    void begin_pass(std::uint64_t most_samples);
+    void run_wave(PathBand& at, std::uint32_t count);
+    void end_pass();
+    void trace_from_camera(Commands& commands, PathBand& at, const PathPush& push);
+    void bounce(Commands& commands, PathBand& at, PathPush push);
+    void launch(Commands& commands, PathBand& at, const gpu::ComputePipeline& kernel, const PathPush& push,
+                std::uint32_t groups);
+    void launch_indirect(Commands& commands, PathBand& at, const gpu::ComputePipeline& kernel, const PathPush& push,
+                         std::uint32_t row);
+    void trace(Commands& commands, PathBand& at, const gpu::ComputePipeline& kernel, const gpu::ComputePipeline& retry,
+               const PathPush& push, std::uint32_t retry_row, std::optional<std::uint32_t> row);
+    void finish(Commands& commands);
+    void read_block(FilmSum& sum, std::uint64_t& lost, std::uint64_t& cut) const;
+    void read_aovs(Film& film);
+    std::uint32_t trace_groups(std::uint32_t rays) const
+    {
+        const std::uint32_t each = shared::kPathWorkgroup * kernels.rays_per_lane;
+        return (rays + each - 1) / each;
+    }
+};
+
+void PathTracer::State::resize(const View& view)
+{
+    if (view.width <= 0 || view.height <= 0)
+        throw Error(Blame::input, "a picture of no pixels cannot be rendered", "give a size of at least 1x1");
+    const auto w = static_cast<std::uint32_t>(view.width);
+    const auto h = static_cast<std::uint32_t>(view.height);
+    if (!bands.empty() && w == width && h == height) return;
+    width = w;
+    height = h;
+    bands.clear();
+    // Whole strips of 8 rows, in which the paths are ordered (generate.comp).
+    const std::uint32_t rows = std::max(kBandPixels / w / 8 * 8, 8u);
+    const std::uint64_t pixels = std::uint64_t{w} * h;
+    aovs = gpu::Buffer(*device, {.size = wants_aovs ? 64 * std::min<std::uint64_t>(pixels, std::uint64_t{rows} * w) : 0,
+                                 .name = "AOVs"});
+    for (std::uint32_t row = 0; row < h; row += rows) {
+        const std::uint32_t count = std::min(rows, h - row) * w;
+        bands.push_back(make_path_band(*device, scene, frame, kernels, queues, row * w, count,
+                                       std::max(count, kWaveCapacity), aovs));
+    }
+}
+
+void PathTracer::State::launch(Commands& commands, PathBand& at, const gpu::ComputePipeline& kernel,
+                               const PathPush& push, std::uint32_t groups)
+{
+    commands.bind(kernel, at.bindings[push.iteration % 2].at(&kernel));
+    commands.push(push);
+    commands.dispatch(groups);
+}
+
+void PathTracer::State::launch_indirect(Commands& commands, PathBand& at, const gpu::ComputePipeline& kernel,
+                                        const PathPush& push, std::uint32_t row)
+{
+    commands.bind(kernel, at.bindings[push.iteration % 2].at(&kernel));
+    commands.push(push);
+    commands.dispatch_indirect(queues.dispatches, 12 * std::uint64_t{row});
+}
+
+/// One trace kernel over a queue (`row`: with indirect workgroup counts), and the exact one over what it leaves.
+void PathTracer::State::trace(Commands& commands, PathBand& at, const gpu::ComputePipeline& kernel,
+                              const gpu::ComputePipeline& retry, const PathPush& push, std::uint32_t retry_row,
+                              std::optional<std::uint32_t> row)
+{
+    if (row) {
+        launch_indirect(commands, at, kernel, push, *row);
+    } else {
+        launch(commands, at, kernel, push, trace_groups(push.slot_count));
+    }
+    if (!kernels.retries) return;
+    commands.barrier(Work::compute, Work::compute);
+    launch(commands, at, kernels.plan_retries, push, 1);
+    commands.barrier(Work::compute, Work::all);
+    launch_indirect(commands, at, retry, push, retry_row);
+    commands.barrier(Work::compute, Work::compute);
+}
+
+/// Camera rays of a wave into queue 0.
+void PathTracer::State::trace_from_camera(Commands& commands, PathBand& at, const PathPush& push)
+{
+    commands.fill(queues.counters, 0);
+    commands.barrier(Work::copy, Work::copy);
+    commands.fill(queues.counters, push.slot_count, 4 * std::uint64_t{shared::kCountPaths}, 4);
+    PathPush first = push;
+    first.iteration = 1;  // writes what iteration 0 reads
+    commands.begin_region("generate");
+    launch(commands, at, kernels.generate, first,
+           (push.slot_count + shared::kPathWorkgroup - 1) / shared::kPathWorkgroup);
+    commands.end_region();
+    commands.barrier(Work::all, Work::compute);
+}
+
+/// One segment of all paths of the wave: what it meets, what light comes from there, and where it goes on.
+void PathTracer::State::bounce(Commands& commands, PathBand& at, PathPush push)
+{
+    const bool first = push.iteration == 0;
+    const bool last = push.iteration + 1 >= scene.frame.max_depth;
+    const auto indirect = [&](std::uint32_t row) { return first ? std::nullopt : std::optional(row); };
+    commands.begin_region("trace paths");
+    trace(commands, at, kernels.trace_paths, kernels.retry_paths, push, shared::kDispatchRetryPaths,
+          indirect(shared::kDispatchTracePaths));
+    commands.end_region();
+    commands.barrier(Work::compute, Work::compute);
+    commands.begin_region("shade");
+    if (first) {
+        launch(commands, at, kernels.shade, push,
+               (push.slot_count + shared::kPathWorkgroup - 1) / shared::kPathWorkgroup);
+    } else {
+        launch_indirect(commands, at, kernels.shade, push, shared::kDispatchShade);
+    }
+    commands.end_region();
+    if (last) return;
+    commands.barrier(Work::all, Work::compute);
+    launch(commands, at, kernels.plan, push, 1);
+    commands.barrier(Work::compute, Work::all);
+    if (scene.frame.strategy_count == 0) return;
+    commands.begin_region("trace shadows");
+    trace(commands, at, kernels.trace_shadows, kernels.retry_shadows, push, shared::kDispatchRetryShadows,
+          shared::kDispatchTraceShadows);
+    commands.end_region();
+}
+
+void PathTracer::State::finish(Commands& commands)
+{
+    commands.submit();
+    commands.wait();
+    if (!timing) return;
+    for (const gpu::RegionTime& region : commands.times()) {
+        const auto same = [&](const KernelTime& t) { return t.name == region.name; };
+        const auto found = std::find_if(times.begin(), times.end(), same);
+        if (found == times.end()) {
+            times.push_back({region.name, region.milliseconds});
+        } else {
+            found->milliseconds += region.milliseconds;
+        }
+    }
+}
+
+void PathTracer::State::begin_pass(std::uint64_t most_samples)
+{
+    if (in_block == kBlockSamples) {
+        read_block(total, nonfinite, truncated);
+        first_of_block += in_block;
+        in_block = 0;
+    }
+    const std::uint64_t left = most_samples - first_of_block - in_block;
+    const std::uint32_t fits = bands.size() == 1 ? std::max(1u, kWaveCapacity / 2 / bands[0].pixel_count) : 1u;
+    in_pass = static_cast<std::uint32_t>(std::min<std::uint64_t>({left, fits, kBlockSamples - in_block}));
+    band = 0;
+    next_slot = 0;
+    slots_done = 0;
+}
+
+/// Follows the next `count` paths of the pass to their ends.
+void PathTracer::State::run_wave(PathBand& at, std::uint32_t count)
+{
+    PathPush push{.first_slot = next_slot,
+                  .slot_count = count,
+                  .pixel_count = at.pixel_count,
+                  .first_pixel = at.first_pixel,
+                  .first_sample = static_cast<std::uint32_t>(first_of_block + in_block),
+                  .sample_count = in_pass,
+                  .iteration = 0,
+                  .done = in_block};
+    const std::uint32_t depth = scene.frame.max_depth;
+    for (std::uint32_t begin = 0; begin < depth; begin += kSegmentsPerSubmit) {
+        const std::uint32_t end = std::min(depth, begin + kSegmentsPerSubmit);
+        Commands commands(*device, "path wave");
+        if (begin == 0) trace_from_camera(commands, at, push);
+        for (push.iteration = begin; push.iteration < end; ++push.iteration) bounce(commands, at, push);
+        finish(commands);
+        if (end == depth) break;
+        const std::uint64_t counter = 4 * (std::uint64_t{shared::kCountersPerIteration} * end + shared::kCountPaths);
+        if (gpu::read_back<std::uint32_t>(*device, queues.counters, 1, counter)[0] == 0) break;
+    }
+}
+
+void PathTracer::State::end_pass()
+{
+    Commands commands(*device, "path film");
+    commands.begin_region("accumulate");
+    for (PathBand& at : bands) {
+        PathPush push{};
+        push.pixel_count = at.pixel_count;
+        push.first_pixel = at.first_pixel;
+        push.sample_count = in_pass;
+        push.done = in_block;
+        launch(commands, at, kernels.accumulate, push,
+               (at.pixel_count + shared::kPathWorkgroup - 1) / shared::kPathWorkgroup);
+    }
+    commands.end_region();
+    finish(commands);
+    in_block += in_pass;
+    in_pass = 0;
+}
+
+/// Adds the block on the device to `sum`; samples that were not finite to `lost`, paths cut by the depth limit to
+/// `cut`.
+void PathTracer::State::read_block(FilmSum& sum, std::uint64_t& lost, std::uint64_t& cut) const
+{
+    const std::size_t pixels = std::size_t{width} * height;
+    std::vector<float> mean(3 * pixels), m2(3 * pixels), alpha(pixels);
+    for (const PathBand& at : bands) {
+        const std::vector<vec4> means = gpu::read_back<vec4>(*device, at.mean, at.pixel_count);
+        const std::vector<vec4> deviations = gpu::read_back<vec4>(*device, at.m2, at.pixel_count);
+        for (std::size_t i = 0; i < at.pixel_count; ++i) {
+            const std::size_t pixel = at.first_pixel + i;
+            const std::uint32_t counts = std::bit_cast<std::uint32_t>(deviations[i].w);
+            const std::uint32_t bad = counts & 0xffffu;
+            lost += bad;
+            cut += counts >> 16;
+            // A pixel that lost samples stands for as many as the others, with the spread of those it has (M13).
+            const double scale = bad < in_block ? double(in_block) / (in_block - bad) : 0;
+            for (std::size_t c = 0; c < 3; ++c) {
+                mean[3 * pixel + c] = means[i][int(c)];
+                m2[3 * pixel + c] = static_cast<float>(deviations[i][int(c)] * scale);
+            }
+            alpha[pixel] = means[i].w;
+        }
+    }
+    sum.add_block(mean, m2, alpha, in_block);
+}
+
+void PathTracer::State::read_aovs(Film& film)
+{
+    const std::size_t pixels = std::size_t{width} * height;
+    Aovs& out = film.aovs;
+    out.depth.resize(pixels);
+    out.normal.resize(pixels);
+    out.albedo.resize(pixels);
+    out.emission.resize(pixels);
+    out.object_id.resize(pixels);
+    out.material_id.resize(pixels);
+    out.uv.resize(pixels);
+    for (PathBand& at : bands) {
+        for (std::uint32_t slot = 0; slot < at.pixel_count; slot += kWaveCapacity) {
+            PathPush push{};
+            push.first_slot = slot;
+            push.slot_count = std::min(kWaveCapacity, at.pixel_count - slot);
+            push.pixel_count = at.pixel_count;
+            push.first_pixel = at.first_pixel;
+            PathPush first = push;
+            first.iteration = 1;
+            const std::uint32_t groups = (push.slot_count + shared::kPathWorkgroup - 1) / shared::kPathWorkgroup;
+            Commands commands(*device, "path AOVs");
+            commands.fill(queues.counters, 0);
+            commands.barrier(Work::copy, Work::copy);
+            commands.fill(queues.counters, push.slot_count, 4 * std::uint64_t{shared::kCountPaths}, 4);
+            launch(commands, at, kernels.generate_centres, first, groups);
+            commands.barrier(Work::all, Work::compute);
+            trace(commands, at, kernels.trace_centres, kernels.retry_centres, push, shared::kDispatchRetryPaths,
+                  std::nullopt);
+            commands.barrier(Work::compute, Work::compute);
+            launch(commands, at, kernels.aovs, push, groups);
+            finish(commands);
+        }
+        const std::vector<vec4> values = gpu::read_back<vec4>(*device, aovs, 4 * std::size_t{at.pixel_count});
+        for (std::size_t i = 0; i < at.pixel_count; ++i) {
+            const std::size_t pixel = at.first_pixel + i;
+            const vec4* v = &values[4 * i];
+            out.normal[pixel] = vec3(v[0]);
+            out.depth[pixel] = v[0].w;
+            out.albedo[pixel] = vec3(v[1]);
+            out.object_id[pixel] = std::bit_cast<std::uint32_t>(v[1].w);
+            out.emission[pixel] = vec3(v[2]);
+            out.material_id[pixel] = std::bit_cast<std::uint32_t>(v[2].w);
+            out.uv[pixel] = vec2(v[3]);
+        }
+    }
+}
+
+PathTracer::PathTracer(gpu::Device& device, const PosedScene& posed, const Requirements& required,
+                       const RenderSettings& settings, const Progress& progress)
+    : state_(std::make_unique<State>(device, posed, required, settings, progress))
+{
+    start(posed.view);
+}
+
+PathTracer::PathTracer(PathTracer&&) noexcept = default;
+PathTracer& PathTracer::operator=(PathTracer&&) noexcept = default;
+PathTracer::~PathTracer() = default;
+
+void PathTracer::start(const View& view)
+{
+    State& s = *state_;
+    s.resize(view);
+    set_view(s.scene.frame, view, s.scene.origin);
+    gpu::upload(*s.device, s.frame, std::as_bytes(std::span(&s.scene.frame, 1)));
+    s.total = FilmSum(view.width, view.height);
+    s.nonfinite = s.truncated = s.first_of_block = 0;
+    s.in_block = s.in_pass = 0;
+}
+
+bool PathTracer::step(std::uint64_t most_samples)
+{
+    State& s = *state_;
+    if (samples() >= most_samples && s.in_pass == 0) return true;
+    if (s.in_pass == 0) s.begin_pass(most_samples);
+    PathBand& at = s.bands[s.band];
+    const std::uint32_t slots = at.pixel_count * s.in_pass;
+    const std::uint32_t count = std::min({slots - s.next_slot, s.wave, kWaveCapacity});
+    const auto begin = std::chrono::steady_clock::now();
+    s.run_wave(at, count);
+    // Towards the size that takes the time aimed at, by at most a factor of two at once.
+    const double wanted = count * kStepSeconds / std::max(seconds_since(begin), 1e-6);
+    if (count == s.wave || wanted < s.wave)
+        s.wave = static_cast<std::uint32_t>(std::clamp(wanted, std::max(s.wave / 2.0, double(kSmallestWave)),
+                                                       std::min(s.wave * 2.0, double(kWaveCapacity))));
+    s.next_slot += count;
+    s.slots_done += count;
+    if (s.next_slot < slots) return false;
+    s.next_slot = 0;
+    if (++s.band < s.bands.size()) return false;
+    s.end_pass();
+    return true;
+}
+
+std::uint64_t PathTracer::samples() const
+{
+    return state_->first_of_block + state_->in_block;
+}
+
+double PathTracer::pass_fraction() const
+{
+    const State& s = *state_;
+    if (s.in_pass == 0) return 0;
+    return double(s.slots_done) / (double(s.width) * s.height * s.in_pass);
+}
+
+Film PathTracer::film()
+{
+    State& s = *state_;
+    FilmSum sum = s.total;
+    std::uint64_t nonfinite = s.nonfinite;
+    std::uint64_t truncated = s.truncated;
+    if (s.in_block > 0) s.read_block(sum, nonfinite, truncated);
+    Film film = sum.film();
+    film.nonfinite = nonfinite;
+    film.truncated = truncated;
+    if (s.wants_aovs) s.read_aovs(film);
+    return film;
+}
+
+void PathTracer::measure_kernels(bool on)
+{
+    state_->timing = on;
+}
+const std::vector<KernelTime>& PathTracer::kernel_times() const
+{
+    return state_->times;
+}
+
+Film render_path(gpu::Device& device, const PosedScene& posed, const Requirements& required,
+                 const RenderSettings& settings, const Progress& progress)
+{
+    PathTracer tracer(device, posed, required, settings, progress);
+    auto last_report = std::chrono::steady_clock::now();
+    ProgressUpdate update;
+    update.stage = "path tracing";
+    // Stopped before the first pass is done, there would be nothing to show: that one is finished.
+    while (tracer.samples() < settings.spp && !(progress.stopped() && tracer.samples() > 0)) {
+        const bool passed = tracer.step(settings.spp);
+        const double done = double(tracer.samples()) + tracer.pass_fraction();
+        update.fraction = done / double(settings.spp);
+        update.samples = tracer.samples();
+        // Reading the film costs as much as a step, so the error so far is said about once a second.
+        if (passed && seconds_since(last_report) > 1) {
+            if (const auto error = estimate_error(tracer.film())) update.error = error->relative;
+            last_report = std::chrono::steady_clock::now();
+        }
+        progress.report(update);
+    }
+    return tracer.film();
+}
+
+}  // namespace etalon

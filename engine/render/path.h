@@ -1,0 +1,55 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/base/progress.h"
+#include "engine/gpu/device.h"
+#include "engine/image/film.h"
+#include "engine/scene/pose.h"
+#include "engine/scene/requirements.h"
+#include "engine/scene/settings.h"
+
+namespace etalon {
+
+/// What one kind of kernel took, by the device's clock.
+struct KernelTime {
+    std::string name;
+    double milliseconds = 0;
+};
+
+/// The path tracer's state on a device: docs/shading.md §3 as a wavefront (docs/architecture.md). The scene is
+/// flattened, its BVH built and everything `required` uploaded once; pictures of any view follow. `posed` (with its
+/// scene) must outlive it. The same picture to the bit whatever the number of steps, threads or the times it is read in
+/// between.
+class PathTracer {
+ public:
+    /// Throws Error(machine) when the device lacks memory, Error(input) when `required` lacks a material's model.
+    PathTracer(gpu::Device& device, const PosedScene& posed, const Requirements& required,
+               const RenderSettings& settings, const Progress& progress = {});
+    PathTracer(PathTracer&&) noexcept;
+    PathTracer& operator=(PathTracer&&) noexcept;
+    ~PathTracer();
+
+    /// Drops all samples and looks through `view`, whose kind of camera must be that of the posed scene.
+    void start(const View& view);
+    /// Does a bounded piece of the current pass, about 50 ms of device time; a pass is one sample in every pixel, or
+    /// more of small pictures, but not beyond `most_samples` in all. True when it completed the pass.
+    bool step(std::uint64_t most_samples);
+    /// Samples per pixel of completed passes.
+    std::uint64_t samples() const;
+    /// Of the pass at hand, 0 … 1.
+    double pass_fraction() const;
+    /// What completed passes measured. AOVs where settings ask for them.
+    Film film();
+    /// Off by default: timing makes each kernel wait for the one before.
+    void measure_kernels(bool on);
+    /// Sums since construction, while measure_kernels was on.
+    const std::vector<KernelTime>& kernel_times() const;
+
+ private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace etalon

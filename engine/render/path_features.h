@@ -1,0 +1,36 @@
+#pragma once
+#include <vector>
+
+#include "engine/gpu/shader.h"
+#include "engine/scene/requirements.h"
+
+namespace etalon {
+
+/// What the path tracer's kernels are compiled for and what is uploaded: Requirements in its own terms.
+struct PathFeatures {
+    bool triangles = false, spheres = false;
+    bool normals = false, uv = false, tangents = false, colors = false;  ///< sections of the attributes
+    bool base_color_texture = false, metallic_roughness_texture = false, normal_texture = false,
+         emissive_texture = false;
+    bool texture_transform = false, wide_texels = false;
+    bool alpha = false;
+    bool metallic_roughness = false, unlit = false, lambert = false, mirror = false;
+    bool rough_conductor = false, dielectric = false, rough_dielectric = false;
+    bool emission = false, punctual = false, sky = false, sky_map = false;
+    bool thin_lens = false, orthographic = false;
+
+    bool textures() const
+    {
+        return base_color_texture || metallic_roughness_texture || normal_texture || emissive_texture;
+    }
+    /// Texels of a primitive in the attribute buffer.
+    std::size_t attribute_stride() const { return 3u * (std::size_t(normals) + uv + tangents + colors); }
+};
+
+/// Throws Error(input) when `required` lacks the model of a material that something visible uses.
+PathFeatures path_features(const PosedScene& posed, const Requirements& required);
+
+/// As specialization constants of shaders/path/features.glsl.
+std::vector<gpu::Constant> path_constants(const PathFeatures& features);
+
+}  // namespace etalon
