@@ -79,8 +79,9 @@ struct StatisticalTest {
     double detectable_whole = 0;  ///< the same of the whole picture, best channel
     double power = 0;
 
-    double pixel_z_std = 0;              ///< of per-pixel z where there is variance; 1 when both variances are honest
-    double pixel_z_max = 0;              ///< largest |z|
+    double tile_z_std = 0;   ///< of the z of all tiles with variance; 1 when both variances are honest
+    double pixel_z_std = 0;  ///< of per-pixel z where there is variance; above 1 where few samples see rare events (K6)
+    double pixel_z_max = 0;  ///< largest |z|
     std::uint64_t pixel_over_bound = 0;  ///< channels with per-pixel p under the Šidák level of all of them
     std::uint64_t constant = 0;          ///< pixel channels without variance on both sides
     std::uint64_t constant_unequal = 0;  ///< … of these, those that differ by more than `rounding`

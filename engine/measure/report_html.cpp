@@ -178,12 +178,13 @@ std::string test_section(const StatisticalTest& test)
         "at {:.2g}). "
         "It finds a difference of {} in a tile and of {} in the whole with probability {:g}. Worst tile: ({}, {}), z = "
         "{:+.2f}, "
-        "p = {:.2g}. Per pixel: std(z) = {:.3f}, largest |z| = {:.1f}. Uniformity of the tiles' p-values: p = "
+        "p = {:.2g}. std(z) = {:.3f} of tiles, {:.3f} of pixels; largest |z| of a pixel {:.1f}. Uniformity of the "
+        "tiles' p-values: p = "
         "{:.2g}.</p>\n"
         "<div class=\"grid\">{}{}</div>\n",
         test.tests, percent(test.false_alarm), test.level, percent(test.detectable_tile),
         percent(test.detectable_whole), test.power, test.worst_tile.x, test.worst_tile.y, test.worst_tile.z,
-        test.worst_tile.p, test.pixel_z_std, test.pixel_z_max, test.uniformity_p,
+        test.worst_tile.p, test.tile_z_std, test.pixel_z_std, test.pixel_z_max, test.uniformity_p,
         histogram_svg(test.tile_p_histogram, "p-values of tiles"),
         histogram_svg(test.pixel_p_histogram, "p-values of pixels"));
 }

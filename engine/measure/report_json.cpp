@@ -85,6 +85,7 @@ Json test_json(const StatisticalTest& test)
             {"worst_tile", finding_json(test.worst_tile)},
             {"whole", whole},
             {"failures", failures},
+            {"tile_z_std", number(test.tile_z_std)},
             {"pixel_z_std", number(test.pixel_z_std)},
             {"pixel_z_max", number(test.pixel_z_max)},
             {"pixel_over_bound", test.pixel_over_bound},

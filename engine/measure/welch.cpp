@@ -166,6 +166,7 @@ void test_tiles(StatisticalTest& test, const std::vector<Tile>& tiles)
 {
     std::vector<double> detectable;
     double smallest_uniformity = 1;
+    double z_square_sum = 0, z_count = 0;
     for (int c = 0; c < 3; ++c) {
         std::vector<double> p_values;
         for (const Tile& tile : tiles) {
@@ -176,11 +177,14 @@ void test_tiles(StatisticalTest& test, const std::vector<Tile>& tiles)
             if (found.p < test.level) test.failures.push_back(found);
             if (sums.variance == 0) continue;
             p_values.push_back(found.p);
+            z_square_sum += found.z * found.z;
+            ++z_count;
             ++test.tile_p_histogram[bin(found.p)];
             if (sums.magnitude > 0) detectable.push_back(sums.detectable(test.level, test.power));
         }
         if (p_values.size() >= 5) smallest_uniformity = std::min(smallest_uniformity, ks_uniform_p(p_values));
     }
+    if (z_count > 0) test.tile_z_std = std::sqrt(z_square_sum / z_count);
     test.uniformity_p = std::min(1.0, 3 * smallest_uniformity);
     test.detectable_tile = median(std::move(detectable));
     test.failed = test.failures.size();

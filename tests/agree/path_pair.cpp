@@ -45,9 +45,9 @@ void expect_agreement(const std::string& what, const Film& vulkan, const Film& r
     const Comparison found = compare(vulkan, reference, settings());
     ASSERT_TRUE(found.test.has_value()) << what;
     const StatisticalTest& test = *found.test;
-    std::printf("%s: %s; std(z) %.3f, worst tile z %+.2f, whole %+.3g%% %+.3g%% %+.3g%%\n", what.c_str(),
-                verdict_text(found).c_str(), test.pixel_z_std, test.worst_tile.z, 100 * test.whole[0].relative,
-                100 * test.whole[1].relative, 100 * test.whole[2].relative);
+    std::printf("%s: %s; std(z) of tiles %.3f, of pixels %.3f, worst tile z %+.2f, whole %+.3g%% %+.3g%% %+.3g%%\n",
+                what.c_str(), verdict_text(found).c_str(), test.tile_z_std, test.pixel_z_std, test.worst_tile.z,
+                100 * test.whole[0].relative, 100 * test.whole[1].relative, 100 * test.whole[2].relative);
     ::testing::Test::RecordProperty("detectable_tile", std::to_string(test.detectable_tile));
     ::testing::Test::RecordProperty("detectable_whole", std::to_string(test.detectable_whole));
     for (const std::string& reason : found.reasons) std::printf("  %s\n", reason.c_str());

@@ -136,6 +136,7 @@ TEST(Compare, honest_variances_give_z_of_deviation_one_and_uniform_p_values)
 {
     const Comparison same = compare(noisy_film(160, 160, 32, 5), noisy_film(160, 160, 32, 6));
     EXPECT_NEAR(same.test->pixel_z_std, 1, 0.05);
+    EXPECT_NEAR(same.test->tile_z_std, 1, 0.15);
     EXPECT_GT(same.test->uniformity_p, 1e-4);
 
     Film shy = noisy_film(160, 160, 32, 7);
@@ -144,6 +145,7 @@ TEST(Compare, honest_variances_give_z_of_deviation_one_and_uniform_p_values)
     for (vec3& v : too.variance) v *= 0.25f;
     const Comparison overconfident = compare(shy, too);
     EXPECT_NEAR(overconfident.test->pixel_z_std, 2, 0.1);
+    EXPECT_NEAR(overconfident.test->tile_z_std, 2, 0.3);
     EXPECT_LT(overconfident.test->uniformity_p, 1e-4);
 }
 
