@@ -64,7 +64,9 @@ class Tangents {
 
     std::vector<vec4> corners() const
     {
-        std::vector<vec4> out(indices_.size(), vec4(1, 0, 0, 1));
+        std::vector<vec4> out;
+        out.reserve(indices_.size());
+        for (const std::uint32_t vertex : welded_) out.emplace_back(any_perpendicular(normals_[vertex]), 1.0f);
         std::vector<std::uint32_t> example(positions_.size(),
                                            kNobody);  // a corner of a face with area, per welded vertex
         std::vector<bool> has_area(indices_.size() / 3);
@@ -207,20 +209,31 @@ class Tangents {
     // The tangents of the group's faces in the plane of the vertex normal, weighted by their angles there.
     vec3 average(const Group& group) const
     {
+        const vec3& n = normals_[group.vertex];
         vec3 sum(0);
+        vec3 unweighted(0);  // for corners whose faces are seen edge-on from the normal: they have no angle
         for (const std::uint32_t f : group.faces) {
             const Face& face = faces_[f];
             if (face.joins_any) continue;
             const std::uint32_t i = corner_of(face, group.vertex);
-            const vec3& n = normals_[group.vertex];
             const vec3& here = positions_[face.vertex[i]];
             const vec3 a = in_plane(positions_[face.vertex[(i + 2) % 3]] - here, n);
             const vec3 b = in_plane(positions_[face.vertex[(i + 1) % 3]] - here, n);
             const float cosine = std::min(std::max(dot(a, b), -1.0f), 1.0f);
-            sum = sum + static_cast<float>(std::acos(static_cast<double>(cosine))) * in_plane(face.tangent, n);
+            const vec3 tangent = in_plane(face.tangent, n);
+            sum = sum + static_cast<float>(std::acos(static_cast<double>(cosine))) * tangent;
+            unweighted = unweighted + tangent;
         }
-        const vec3 out = normalized(sum);
-        return not_zero(length(out)) ? out : vec3(1, 0, 0);
+        for (const vec3& candidate : {normalized(sum), normalized(unweighted)})
+            if (not_zero(length(candidate))) return candidate;
+        return any_perpendicular(n);
+    }
+
+    static vec3 any_perpendicular(const vec3& n)
+    {
+        const vec3 axis = std::abs(n.x) < 0.5f ? vec3(1, 0, 0) : vec3(0, 1, 0);
+        const vec3 out = in_plane(axis, n);
+        return not_zero(length(out)) ? out : axis;
     }
 
     static std::uint32_t corner_of(const Face& face, std::uint32_t vertex)
