@@ -36,14 +36,13 @@ inline Bytes grey_jpeg()
         "875fffd9");
 }
 
-/// Lossy WebP with an ALPH chunk, 16x16: colour (200, 100, 50) throughout, alpha of texel i is i.
+/// Lossy WebP with an ALPH chunk, 16x16: colour (200, 100, 50) throughout, alpha of texel i is max(i, 32).
 inline Bytes lossy_webp()
 {
     return from_hex(
-        "52494646c400000057454250565038580a000000100000000f00000f0000414c50481700000001898ce87f8048db667330ff860f"
-        "4f23266002a8357701005650382086000000f002009d012a1000100000000025b00274ba01f801fa01fc02600016675ae22000fe"
-        "ffff9ff299ff079fd8bf3f5bcbb1e40ec909d37dddc8c703d5910c34695df9989f65b7fd7dabc35c80921a39f3fee8fdb32411fa"
-        "5efbdc2df8fff63fd17f47262a23a6fde35cecc2c5b3ff42fe8bffde16ffe55c46a8bfcabf350981af53ffc20de00000");
+        "524946468c00000057454250565038580a000000100000000f00000f0000414c50481d00000001893244f43fa0260012061a1081"
+        "fe45ddde111330010ee5141588fe0f0056503820480000007002009d012a1000100000000025a13001185100fc00fd00fe0003c8"
+        "00feee7854fd5b4adba5966f13e58b94d067304fffc7f5608d0a2d7effc7f3fffb3e1e727e94ffece0000000");
 }
 
 /// EXR in tiles of 4x4, every value 0.5; `partial`: 5x5 texels, so that tiles stick out; else 4x4.

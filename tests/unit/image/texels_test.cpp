@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cstring>
 #include <map>
 
@@ -53,10 +54,10 @@ TEST(DecodeTexels, keeps_colour_under_zero_alpha)
                 ElementsAre(200, 100, 50, 0));
     const Texels lossy = decode_texels(samples::lossy_webp(), "lossy webp");
     for (std::size_t i = 0; i < 256; ++i) {
-        EXPECT_NEAR(lossy.bytes[4 * i], 200, 12);
-        EXPECT_NEAR(lossy.bytes[4 * i + 1], 100, 12);
-        EXPECT_NEAR(lossy.bytes[4 * i + 2], 50, 12);
-        EXPECT_EQ(lossy.bytes[4 * i + 3], i);
+        EXPECT_NEAR(lossy.bytes[4 * i], 200, 6);
+        EXPECT_NEAR(lossy.bytes[4 * i + 1], 100, 6);
+        EXPECT_NEAR(lossy.bytes[4 * i + 2], 50, 6);
+        EXPECT_EQ(lossy.bytes[4 * i + 3], std::max<std::size_t>(i, 32));
     }
 }
 
@@ -74,7 +75,7 @@ TEST(DecodeTexels, reads_jpeg)
     EXPECT_EQ(texels.width, 8);
     EXPECT_EQ(texels.height, 8);
     for (std::size_t i = 0; i < 64; ++i) {
-        EXPECT_NEAR(texels.bytes[4 * i], 4 * double(i), 12);
+        EXPECT_NEAR(texels.bytes[4 * i], 4 * double(i), 6);
         EXPECT_EQ(texels.bytes[4 * i + 1], texels.bytes[4 * i]);
         EXPECT_EQ(texels.bytes[4 * i + 3], 255);
     }
