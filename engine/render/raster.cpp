@@ -131,6 +131,8 @@ RasterScene::RasterScene(gpu::Device& device, const PosedScene& posed, const Req
                                 .memory = gpu::MemoryKind::upload,
                                 .name = "emitters"})
 {
+    if (settings.msaa != 1 && settings.msaa != 4)
+        throw Error(Blame::input, fmt::format("the rasterizer takes 1 or 4 samples a pixel, not {}", settings.msaa));
     if (variants_.samples() == 4 && (device.limits().samples >> 2 & 1) == 0)
         throw Error(Blame::machine, fmt::format("{} cannot draw 4 samples a pixel in float32", device.name()),
                     "render with --msaa 1");
