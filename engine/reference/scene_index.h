@@ -91,17 +91,17 @@ class SceneIndex {
     std::vector<Node> nodes_;
 };
 
-// Slab test (RT-3). Comparisons are ordered so that 0 · Inf = NaN leaves the interval as it is (promise G19).
+// Slab test (RT-3). Planes are chosen by the ray's sign and compared so that 0 · Inf = NaN leaves the interval as it is
+// (promise G19).
 inline bool SceneIndex::enters(const Box& box, const RayBox& ray, double t_max)
 {
     // Far above 1 + 2 γ₃ (promise G20) and the rounding of a hit's own t: no hit that trying every shape finds is lost.
     constexpr double kSlack = 1e-10;
     double t0 = 0, t1 = t_max;
     for (int i = 0; i < 3; ++i) {
-        const double a = (box.low[i] - ray.origin[i]) * ray.inverse[i];
-        const double b = (box.high[i] - ray.origin[i]) * ray.inverse[i];
-        const double near = (a < b ? a : b) * (1 - kSlack);
-        const double far = (a < b ? b : a) * (1 + kSlack);
+        const bool down = std::signbit(ray.inverse[i]);
+        const double near = ((down ? box.high : box.low)[i] - ray.origin[i]) * ray.inverse[i] * (1 - kSlack);
+        const double far = ((down ? box.low : box.high)[i] - ray.origin[i]) * ray.inverse[i] * (1 + kSlack);
         t0 = near > t0 ? near : t0;
         t1 = far < t1 ? far : t1;
     }
