@@ -60,9 +60,14 @@ Contender contender(const std::string& scene_name, const PosedScene& posed, cons
                         .device = {},
                         .film = {},
                         .stages = {}};
-        run.film = renderers.draw(scene_name, posed, settings, progress);
+        Drawn drawn = renderers.draw(scene_name, posed, settings, progress);
+        run.film = std::move(drawn.film);
+        run.stages = std::move(drawn.stages);
         run.device = run.film.metadata.at("device");
-        run.stages.push_back({"render", stopwatch.lap()});
+        double told = 0;
+        for (const StageTime& stage : run.stages) told += stage.seconds;
+        // The report adds the stages up: what the renderer did not name completes them.
+        run.stages.push_back({told > 0 ? "rest" : "render", std::max(0.0, stopwatch.lap() - told)});
         return run;
     };
     return {.name = std::string(name(renderer)), .label = std::string(label(renderer)), .render = render};

@@ -53,6 +53,7 @@ struct Seconds {
 
 struct Picture {
     Film film;
+    std::vector<StageTime> stages;  ///< of the rendering
     std::vector<std::string> notes;
     Seconds seconds;
     bool interrupted = false;
@@ -76,6 +77,8 @@ Json as_json(const Job& job, const Picture& picture, const RenderSettings& setti
     if (const auto estimate = estimate_error(film))
         error = Json::object({{"relative", estimate->relative}, {"low", estimate->low}, {"high", estimate->high}});
     const Seconds& s = picture.seconds;
+    std::vector<std::pair<std::string, Json>> stages;
+    for (const StageTime& stage : picture.stages) stages.emplace_back(stage.stage, stage.seconds);
     return Json::object(
         {{"scene", job.scene},
          {"outputs", job.outputs},
@@ -92,7 +95,8 @@ Json as_json(const Job& job, const Picture& picture, const RenderSettings& setti
          {"findings", findings},
          {"notes", picture.notes},
          {"interrupted", picture.interrupted},
-         {"seconds", Json::object({{"load", s.load}, {"pose", s.pose}, {"render", s.render}, {"write", s.write}})}});
+         {"seconds", Json::object({{"load", s.load}, {"pose", s.pose}, {"render", s.render}, {"write", s.write}})},
+         {"render_stages", Json::object(stages)}});
 }
 
 Picture make(const Job& job, const Arguments& arguments, const RenderSettings& settings, Renderers& renderers,
@@ -105,7 +109,9 @@ Picture make(const Job& job, const Arguments& arguments, const RenderSettings& s
     const PosedScene posed = pose(scene, pose_settings(arguments));
     picture.notes = posed.notes;
     picture.seconds.pose = stopwatch.lap();
-    picture.film = renderers.draw(job.scene, posed, settings, progress);
+    Drawn drawn = renderers.draw(job.scene, posed, settings, progress);
+    picture.film = std::move(drawn.film);
+    picture.stages = std::move(drawn.stages);
     picture.seconds.render = stopwatch.lap();
     picture.interrupted = progress.stopped();
     return picture;

@@ -26,6 +26,19 @@ std::string describe(const dmat4& m)
     return text;
 }
 
+/// Renderers say their times as "milliseconds.<stage>" in the metadata, where they would make every file different.
+std::vector<StageTime> take_stages(Film& film)
+{
+    constexpr std::string_view kPrefix = "milliseconds.";
+    std::vector<StageTime> stages;
+    for (auto row = film.metadata.begin(); row != film.metadata.end();) {
+        const auto milliseconds = row->first.starts_with(kPrefix) ? parse_number(row->second) : std::nullopt;
+        if (milliseconds) stages.push_back({row->first.substr(kPrefix.size()), *milliseconds / 1000});
+        row = milliseconds ? film.metadata.erase(row) : std::next(row);
+    }
+    return stages;
+}
+
 /// Everything needed to make the same film again.
 void describe(Film& film, const PosedScene& posed, const RenderSettings& settings)
 {
@@ -59,8 +72,8 @@ gpu::Device& Renderers::device()
     return *device_;
 }
 
-Film Renderers::draw(const std::string& scene_name, const PosedScene& posed, const RenderSettings& settings,
-                     const Progress& progress)
+Drawn Renderers::draw(const std::string& scene_name, const PosedScene& posed, const RenderSettings& settings,
+                      const Progress& progress)
 {
     const Requirements required = require(posed, settings);
     Film film;
@@ -83,10 +96,12 @@ Film Renderers::draw(const std::string& scene_name, const PosedScene& posed, con
         error.at(fmt::format("{}, {}", scene_name, label(settings.renderer)));
         throw;
     }
+    Drawn drawn{.film = {}, .stages = take_stages(film)};
     describe(film, posed, settings);
     film.metadata["device"] = device_of(settings.renderer);
     check_validation();
-    return film;
+    drawn.film = std::move(film);
+    return drawn;
 }
 
 std::string Renderers::device_of(Renderer renderer)

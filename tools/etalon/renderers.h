@@ -5,20 +5,28 @@
 #include "engine/base/progress.h"
 #include "engine/gpu/device.h"
 #include "engine/image/film.h"
+#include "engine/measure/report.h"
 #include "engine/scene/pose.h"
 #include "engine/scene/settings.h"
 #include "tools/etalon/arguments.h"
 
 namespace etalon::cli {
 
+/// A film and how long its making took, stage by stage where the renderer says so.
+struct Drawn {
+    Film film;
+    std::vector<StageTime> stages;
+};
+
 /// The renderers behind one call, and the device that two of them need: made at first use, kept for all later scenes.
 class Renderers {
  public:
     explicit Renderers(const Arguments& arguments);
 
-    /// Film::metadata gets scene, renderer, settings, seed, version and device.
-    Film draw(const std::string& scene_name, const PosedScene& posed, const RenderSettings& settings,
-              const Progress& progress);
+    /// Film::metadata gets scene, renderer, settings, seed, version and device; times leave it, so
+    /// that the same settings give the same file.
+    Drawn draw(const std::string& scene_name, const PosedScene& posed, const RenderSettings& settings,
+               const Progress& progress);
 
     /// "CPU, double precision" for the references, else what Vulkan device it is.
     std::string device_of(Renderer renderer);

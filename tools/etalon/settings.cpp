@@ -51,7 +51,8 @@ void read_environment(const Arguments& arguments, PoseSettings& settings)
     const std::optional<std::string> value = arguments.text("environment");
     if (value == "none")
         settings.no_environment = true;
-    else if (value) settings.environment = read_environment(*value);
+    else if (value)
+        settings.environment = etalon::read_environment(*value);
     settings.environment_rotation = arguments.number("environment-rotation", -1e6, 1e6).value_or(0);
     settings.environment_intensity = arguments.number("environment-intensity", 0, 1e9).value_or(1);
 }
