@@ -33,7 +33,9 @@ std::string_view name(VkDescriptorType type)
 /// Collects descriptor writes and what they point to; lists, because the writes keep addresses.
 class Writer {
  public:
-    Writer(const DeviceState& state, VkDescriptorSet set) : state_(state), set_(set) {}
+    Writer(const DeviceState& state, const Layout& layout, VkDescriptorSet set)
+        : state_(state), layout_(layout), set_(set)
+    {}
 
     void add(const DeclaredBinding& declared, const Bind& bind)
     {
@@ -65,10 +67,10 @@ class Writer {
     }
 
  private:
-    [[noreturn]] static void throw_wrong_kind(const DeclaredBinding& declared)
+    [[noreturn]] void throw_wrong_kind(const DeclaredBinding& declared) const
     {
-        throw Error(Blame::input, fmt::format("binding {} ({}) wants {}{}, and was given something else",
-                                              declared.binding, declared.name, name(declared.type),
+        throw Error(Blame::input, fmt::format("pipeline \"{}\": binding {} wants {}{}, and was given something else",
+                                              layout_.name(), declared.binding, name(declared.type),
                                               declared.count > 1 ? fmt::format(", {} times", declared.count) : ""));
     }
 
@@ -82,10 +84,11 @@ class Writer {
                                        ? state_.limits.uniform_buffer_range
                                        : state_.limits.storage_buffer_range;
         if (size > most)
-            throw Error(Blame::machine,
-                        fmt::format("binding {} ({}) needs {} bytes in one piece; this device binds at most {}",
-                                    declared.binding, declared.name, size, most),
-                        "use a smaller picture or scene");
+            throw Error(
+                Blame::machine,
+                fmt::format("pipeline \"{}\": binding {} needs {} bytes in one piece; this device binds at most {}",
+                            layout_.name(), declared.binding, size, most),
+                "use a smaller picture or scene");
         return &buffers_.emplace_back(VkDescriptorBufferInfo{range->buffer->handle(), range->offset, size});
     }
 
@@ -112,7 +115,7 @@ class Writer {
         return infos.data();
     }
 
-    static VkDescriptorImageInfo image_info(const DeclaredBinding& declared, const ImageBinding& bind)
+    VkDescriptorImageInfo image_info(const DeclaredBinding& declared, const ImageBinding& bind) const
     {
         const bool sampled = declared.type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
         if (bind.image == nullptr || !*bind.image || sampled != (bind.sampler != nullptr)) throw_wrong_kind(declared);
@@ -124,6 +127,7 @@ class Writer {
     }
 
     const DeviceState& state_;
+    const Layout& layout_;
     VkDescriptorSet set_;
     std::vector<VkWriteDescriptorSet> writes_;
     std::list<VkDescriptorBufferInfo> buffers_;
@@ -145,7 +149,8 @@ Bindings::Bindings(Device& device, const Layout& layout, const std::vector<Bind>
     std::vector<VkDescriptorPoolSize> sizes;
     for (const DeclaredBinding& declared : layout.bindings())
         if (declared.set == set) sizes.push_back({declared.type, declared.count});
-    if (sizes.empty()) throw Error(Blame::input, fmt::format("the shaders declare no descriptor set {}", set));
+    if (sizes.empty())
+        throw Error(Blame::input, fmt::format("pipeline \"{}\" declares no descriptor set {}", layout.name(), set));
     const VkDescriptorPoolCreateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
                                           .maxSets = 1,
                                           .poolSizeCount = static_cast<std::uint32_t>(sizes.size()),
@@ -160,14 +165,15 @@ Bindings::Bindings(Device& device, const Layout& layout, const std::vector<Bind>
                                                  .pSetLayouts = &set_layout};
     check(state.vk.vkAllocateDescriptorSets(state.device, &allocation, &set_), "vkAllocateDescriptorSets");
 
-    Writer writer(state, set_);
+    Writer writer(state, layout, set_);
     for (const DeclaredBinding& declared : layout.bindings()) {
         if (declared.set != set) continue;
         const auto bind = std::find_if(binds.begin(), binds.end(),
                                        [&](const Bind& candidate) { return candidate.binding == declared.binding; });
         if (bind == binds.end())
-            throw Error(Blame::input, fmt::format("nothing was given for set {}, binding {} ({}), which wants {}", set,
-                                                  declared.binding, declared.name, name(declared.type)));
+            throw Error(Blame::input,
+                        fmt::format("pipeline \"{}\": nothing was given for set {}, binding {}, which wants {}",
+                                    layout.name(), set, declared.binding, name(declared.type)));
         writer.add(declared, *bind);
     }
     writer.flush();

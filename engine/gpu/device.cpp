@@ -82,7 +82,8 @@ DeviceState::DeviceState(const DeviceOptions& options) : instance(options)
     if (chosen == judged.end()) throw_no_device(judged);
     try {
         create(*chosen);
-        memory = std::make_unique<MemoryPool>(*this, options.memory_budget.value_or(default_budget(report)));
+        memory =
+            std::make_unique<MemoryPool>(*this, options.memory_budget.value_or(default_budget(report)), options.staged);
     } catch (...) {
         release();
         throw;

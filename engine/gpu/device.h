@@ -38,6 +38,8 @@ struct DeviceOptions {
     /// Also hears what validation says, until the device is gone; called by whichever thread makes the faulty call.
     std::function<void(const std::string&)> on_message;
     std::optional<std::uint64_t> memory_budget;  ///< bytes; see Device::memory_budget
+    /// Never maps device memory, as on a discrete GPU, also where it is the host's: for tests of that way.
+    bool staged = false;
     /// To present: what the window system needs of the instance, and how it makes a surface. The Device owns the
     /// surface and is chosen so that it can present to it.
     std::vector<std::string> instance_extensions;

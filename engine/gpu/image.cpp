@@ -13,6 +13,10 @@
 namespace etalon::gpu {
 namespace {
 
+/// Of single-sample images.
+constexpr VkImageUsageFlags kAlways =
+    VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+
 void check_limits(const DeviceState& state, const ImageSpec& spec, VkImageUsageFlags usage)
 {
     const DeviceLimits& limits = state.limits;
@@ -92,7 +96,7 @@ Image::Image(Device& device, const ImageSpec& spec) : spec_(spec)
     assume(spec.width > 0 && spec.height > 0 && spec.layers > 0);
     if (spec_.mips == 0) spec_.mips = mip_count(spec.width, spec.height);
     VkImageUsageFlags usage = spec.usage;
-    if (spec.samples == 1) usage |= VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    if (spec.samples == 1) usage |= kAlways;
     check_limits(state, spec_, usage);
     const VkImageCreateInfo info{.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
                                  .imageType = VK_IMAGE_TYPE_2D,

@@ -27,7 +27,7 @@ struct ImageSpec {
     std::uint32_t mips = 1;  ///< 0: all levels down to 1x1
     std::uint32_t samples = 1;
     bool array = false;           ///< view it as a 2D array even with one layer
-    VkImageUsageFlags usage = 0;  ///< copies in both directions are always allowed on single-sample images
+    VkImageUsageFlags usage = 0;  ///< single-sample images may always be copied and sampled too
     std::string name;
 };
 

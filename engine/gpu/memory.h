@@ -28,6 +28,7 @@ class Allocation {
         std::swap(arena_, other.arena_);
         std::swap(offset_, other.offset_);
         std::swap(size_, other.size_);
+        std::swap(mapped_, other.mapped_);
         return *this;
     }
     ~Allocation();
@@ -42,6 +43,7 @@ class Allocation {
     Arena* arena_ = nullptr;
     std::uint64_t offset_ = 0;
     std::uint64_t size_ = 0;
+    bool mapped_ = false;  ///< may be seen by the host
 };
 
 }  // namespace etalon::gpu

@@ -68,16 +68,16 @@ VkDeviceMemory Allocation::memory() const
 
 std::span<std::byte> Allocation::mapped() const
 {
-    if (arena_ == nullptr || arena_->mapped == nullptr) return {};
+    if (!mapped_ || arena_->mapped == nullptr) return {};
     return {arena_->mapped + offset_, size_};
 }
 
-MemoryPool::MemoryPool(const DeviceState& state, std::uint64_t budget) : state_(state)
+MemoryPool::MemoryPool(const DeviceState& state, std::uint64_t budget, bool staged) : state_(state)
 {
     state.instance.vk.vkGetPhysicalDeviceMemoryProperties(state.physical, &properties_);
     use_.budget = budget;
     // A discrete GPU may show host-visible device memory too, but there writing through it is not free.
-    if (state.report.type == "cpu" || state.report.type == "integrated")
+    if (!staged && (state.report.type == "cpu" || state.report.type == "integrated"))
         for (std::uint32_t i = 0; i < properties_.memoryTypeCount; ++i) {
             const VkMemoryPropertyFlags all = kMapped | VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
             if ((properties_.memoryTypes[i].propertyFlags & all) == all) unified_ = true;
@@ -156,6 +156,7 @@ Allocation MemoryPool::allocate(const VkMemoryRequirements& needs, MemoryKind ki
     const std::uint32_t type = pick_type(needs.memoryTypeBits, kind);
     Allocation piece;
     piece.size_ = needs.size;
+    piece.mapped_ = kind != MemoryKind::device || unified_;
     for (const auto& arena : arenas_)
         if (arena->type == type && arena->linear == linear && arena->take(needs.size, needs.alignment, piece.offset_)) {
             piece.arena_ = arena.get();

@@ -29,7 +29,8 @@ class Arena {
 
 class MemoryPool {
  public:
-    MemoryPool(const DeviceState& state, std::uint64_t budget);
+    /// `staged`: see DeviceOptions.
+    MemoryPool(const DeviceState& state, std::uint64_t budget, bool staged);
     ~MemoryPool();
     MemoryPool(const MemoryPool&) = delete;
     MemoryPool& operator=(const MemoryPool&) = delete;

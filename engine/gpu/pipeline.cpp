@@ -179,7 +179,7 @@ void destroy_set_layout(const DeviceState& state, VkDescriptorSetLayout layout)
     state.vk.vkDestroyDescriptorSetLayout(state.device, layout, nullptr);
 }
 
-Layout::Layout(Device& device, std::span<const Interface> stages)
+Layout::Layout(Device& device, std::span<const Interface> stages, std::string name) : name_(std::move(name))
 {
     const DeviceState& state = device.state();
     for (const Interface& stage : stages) {
@@ -190,8 +190,8 @@ Layout::Layout(Device& device, std::span<const Interface> stages)
             if (same == bindings_.end())
                 bindings_.push_back(declared);
             else if (same->type != declared.type || same->count != declared.count)
-                throw Error(Blame::input, fmt::format("two declarations of set {}, binding {} differ: {} and {}",
-                                                      declared.set, declared.binding, same->name, declared.name));
+                throw Error(Blame::input, fmt::format("pipeline \"{}\": two declarations of set {}, binding {} differ",
+                                                      name_, declared.set, declared.binding));
             else
                 same->stages |= declared.stages;
         }
@@ -230,12 +230,12 @@ Layout::Layout(Device& device, std::span<const Interface> stages)
     layout_ = {state, layout};
 }
 
-ComputePipeline::ComputePipeline(Device& device, const ComputePipelineSpec& spec) : name_(spec.name)
+ComputePipeline::ComputePipeline(Device& device, const ComputePipelineSpec& spec)
 {
     const DeviceState& state = device.state();
     const Interface found = reflect_as(spec.shader, VK_SHADER_STAGE_COMPUTE_BIT, spec.name);
     std::copy_n(found.workgroup, 3, workgroup_);
-    layout_ = Layout(device, std::span(&found, 1));
+    layout_ = Layout(device, std::span(&found, 1), spec.name);
     const Stage stage(state, spec.shader, VK_SHADER_STAGE_COMPUTE_BIT);
     const VkComputePipelineCreateInfo info{
         .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO, .stage = stage.info(), .layout = layout_.handle()};
@@ -247,12 +247,12 @@ ComputePipeline::ComputePipeline(Device& device, const ComputePipelineSpec& spec
 }
 
 GraphicsPipeline::GraphicsPipeline(Device& device, const GraphicsPipelineSpec& spec)
-    : name_(spec.name), cull_(spec.cull), front_(spec.front)
+    : cull_(spec.cull), front_(spec.front)
 {
     const DeviceState& state = device.state();
     const Interface stages[] = {reflect_as(spec.vertex, VK_SHADER_STAGE_VERTEX_BIT, spec.name),
                                 reflect_as(spec.fragment, VK_SHADER_STAGE_FRAGMENT_BIT, spec.name)};
-    layout_ = Layout(device, stages);
+    layout_ = Layout(device, stages, spec.name);
     const VkPipeline pipeline = create_graphics(state, spec, layout_.handle());
     pipeline_ = {state, pipeline};
     set_name(state, VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(pipeline), spec.name);

@@ -17,8 +17,9 @@ class Layout {
  public:
     Layout() = default;
     /// Throws Error(input) when two stages disagree about a binding.
-    Layout(Device& device, std::span<const Interface> stages);
+    Layout(Device& device, std::span<const Interface> stages, std::string name);
 
+    const std::string& name() const { return name_; }  ///< of the pipeline
     VkPipelineLayout handle() const { return layout_.get(); }
     VkDescriptorSetLayout set(std::uint32_t index) const { return sets_[index].get(); }
     std::uint32_t set_count() const { return static_cast<std::uint32_t>(sets_.size()); }
@@ -27,6 +28,7 @@ class Layout {
     VkShaderStageFlags push_stages() const { return push_stages_; }
 
  private:
+    std::string name_;
     std::vector<Owned<VkDescriptorSetLayout, destroy_set_layout>> sets_;
     Owned<VkPipelineLayout, destroy_pipeline_layout> layout_;
     std::vector<DeclaredBinding> bindings_;
@@ -46,14 +48,12 @@ class ComputePipeline {
 
     VkPipeline handle() const { return pipeline_.get(); }
     const Layout& layout() const { return layout_; }
-    const std::string& name() const { return name_; }
     /// Invocations of one workgroup along x, y, z (as compiled: a local size set by specialization is not seen here).
     std::uint32_t workgroup(int axis) const { return workgroup_[axis]; }
 
  private:
     Layout layout_;
     Owned<VkPipeline, destroy_pipeline> pipeline_;
-    std::string name_;
     std::uint32_t workgroup_[3] = {1, 1, 1};
 };
 
@@ -111,14 +111,12 @@ class GraphicsPipeline {
 
     VkPipeline handle() const { return pipeline_.get(); }
     const Layout& layout() const { return layout_; }
-    const std::string& name() const { return name_; }
     VkCullModeFlags cull() const { return cull_; }
     VkFrontFace front() const { return front_; }
 
  private:
     Layout layout_;
     Owned<VkPipeline, destroy_pipeline> pipeline_;
-    std::string name_;
     VkCullModeFlags cull_ = VK_CULL_MODE_NONE;
     VkFrontFace front_ = VK_FRONT_FACE_COUNTER_CLOCKWISE;
 };

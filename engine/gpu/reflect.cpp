@@ -106,8 +106,7 @@ void add_bindings(const Module& module, spvc_resource_type resource, Interface& 
                                 .binding = decoration(SpvDecorationBinding),
                                 .type = descriptor_type(resource, of_buffer),
                                 .count = count,
-                                .stages = static_cast<VkShaderStageFlags>(out.stage),
-                                .name = found.name});
+                                .stages = static_cast<VkShaderStageFlags>(out.stage)});
     }
 }
 

@@ -4,7 +4,6 @@
 #include <bit>
 #include <cstdint>
 #include <span>
-#include <string>
 #include <vector>
 
 namespace etalon::gpu {
@@ -34,7 +33,6 @@ struct DeclaredBinding {
     VkDescriptorType type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     std::uint32_t count = 1;  ///< elements of an array of descriptors
     VkShaderStageFlags stages = 0;
-    std::string name;
 };
 
 /// What a shader wants bound, read from its SPIR-V.
