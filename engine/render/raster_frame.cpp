@@ -95,6 +95,7 @@ void place(const dmat4& world_from_object, const dvec3& eye, shared::RasterDraw&
         for (int j = 0; j < 3; ++j) largest = std::max(largest, std::abs(m[i][j]));
     const dmat3 unit = m / (largest > 0 ? largest : 1.0);
     const double sign = is_mirrored(world_from_object) ? -1 : 1;
+    draw.handedness = static_cast<float>(sign);
     draw.normal_matrix =
         mat3(dmat3(sign * cross(unit[1], unit[2]), sign * cross(unit[2], unit[0]), sign * cross(unit[0], unit[1])));
 }
