@@ -48,6 +48,7 @@ void set_option(Arguments& arguments, std::string_view name, const std::string& 
 Arguments parse(int count, char** words)
 {
     Arguments arguments;
+    arguments.view.render.spp = 4096;  // a window need not stop where a file would
     for (int i = 1; i < count; ++i) {
         const std::string_view word = words[i];
         if (word == "--validate")

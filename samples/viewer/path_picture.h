@@ -8,14 +8,15 @@
 
 #include "engine/gpu/device.h"
 #include "engine/image/film.h"
+#include "engine/render/path.h"
 #include "engine/scene/pose.h"
 #include "engine/scene/requirements.h"
 #include "engine/scene/settings.h"
 
 namespace etalon {
 
-/// A path-traced picture that gets better for as long as its view stays. It is traced on a thread of its own, so that
-/// the window answers while the device is busy.
+/// A path-traced picture that gets better while its view stays, up to settings.spp samples a pixel. It is traced on a
+/// thread of its own, so that the window answers while the device is busy.
 class PathPicture {
  public:
     /// `posed` and the device must outlive it.
@@ -31,8 +32,8 @@ class PathPicture {
 
  private:
     void work();
-    void trace(PosedScene posed, std::uint64_t turn);
-    bool add(Film film, std::uint64_t turn);
+    void trace(PathTracer& tracer, const View& view);
+    bool publish(PathTracer& tracer);
 
     gpu::Device& device_;
     const PosedScene& posed_;
@@ -41,10 +42,8 @@ class PathPicture {
     std::mutex mutex_;  // guards what follows, but for stop_
     std::condition_variable wake_;
     std::optional<View> wanted_;
-    std::uint64_t turn_ = 0;  ///< counts start()
     bool quit_ = false;
-    std::optional<Film> sum_;  ///< of this turn
-    bool fresh_ = false;       ///< sum_ was not taken yet
+    std::optional<Film> film_;  ///< of the view wanted last, not taken yet
     std::exception_ptr failure_;
 
     std::atomic<bool> stop_ = false;  ///< what is being traced is no longer wanted
