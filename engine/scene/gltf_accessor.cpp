@@ -10,8 +10,6 @@ namespace etalon::gltf {
 
 namespace {
 
-constexpr std::size_t kMaxDecodedBytes = std::size_t{8} << 30;
-
 std::size_t components_of(int type)
 {
     const int count = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(type));
@@ -116,66 +114,75 @@ std::vector<std::uint32_t> sparse_positions(const Source& source, const tinygltf
     return out;
 }
 
-// Calls `put(element, bytes, at)` for the base elements, then for the sparse ones that replace some.
+// Calls `put(place, bytes, at)` for each element of `subset`, numbered by its place there: first the base elements,
+// then the sparse ones that replace some.
 template <typename Function>
 void for_each_element(const Source& source, const tinygltf::Accessor& accessor, std::size_t size,
-                      const std::string& pointer, Function put)
+                      const std::string& pointer, const Subset& subset, Function put)
 {
+    const std::size_t count = subset ? subset->size() : accessor.count;
     if (accessor.bufferView >= 0) {
         const Elements from = elements(source, accessor.bufferView, accessor.byteOffset, size);
-        for (std::size_t i = 0; i < accessor.count; ++i) put(i, from.bytes, i * from.stride);
+        for (std::size_t i = 0; i < count; ++i) put(i, from.bytes, (subset ? (*subset)[i] : i) * from.stride);
     }
     if (!accessor.sparse.isSparse) return;
     const std::vector<std::uint32_t> positions = sparse_positions(source, accessor, pointer);
     const auto& values = accessor.sparse.values;
     const Elements from = elements(source, values.bufferView, static_cast<std::size_t>(values.byteOffset), size);
-    for (std::size_t i = 0; i < positions.size(); ++i) put(positions[i], from.bytes, i * size);
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        std::size_t place = positions[i];
+        if (subset) {
+            const auto found = std::lower_bound(subset->begin(), subset->end(), positions[i]);
+            if (found == subset->end() || *found != positions[i]) continue;
+            place = static_cast<std::size_t>(found - subset->begin());
+        }
+        put(place, from.bytes, i * size);
+    }
 }
 
 }  // namespace
-
-void AccessorReader::spend(std::size_t bytes, const std::string& pointer)
-{
-    spent_ += bytes;
-    if (spent_ > kMaxDecodedBytes)
-        throw fault(pointer, fmt::format("the vertices of all primitives need over {} GiB", kMaxDecodedBytes >> 30),
-                    "give each primitive its own part of the vertices, or split the file");
-}
 
 std::size_t AccessorReader::count(int accessor) const
 {
     return source_.model.accessors.at(static_cast<std::size_t>(accessor)).count;
 }
 
-Floats AccessorReader::floats(int index, std::initializer_list<std::size_t> components, const std::string& pointer)
+Floats AccessorReader::floats(int index, std::initializer_list<std::size_t> components, const std::string& pointer,
+                              const Subset& subset) const
 {
     const auto& accessor = source_.model.accessors.at(static_cast<std::size_t>(index));
-    Floats out{.count = accessor.count, .components = components_of(accessor.type), .values = {}};
+    Floats out{
+        .count = subset ? subset->size() : accessor.count, .components = components_of(accessor.type), .values = {}};
     if (std::find(components.begin(), components.end(), out.components) == components.end())
         throw fault(
             pointer,
             fmt::format("accessor {} has {} components an element [MESH_PRIMITIVE_ATTRIBUTES_ACCESSOR_INVALID_FORMAT]",
                         index, out.components));
-    spend(out.count * out.components * sizeof(float), pointer);
     out.values.resize(out.count * out.components);
     const std::size_t size = size_of(accessor.componentType);
     const std::string where = fmt::format("/accessors/{}", index);
-    for_each_element(source_, accessor, size * out.components, where,
+    for_each_element(source_, accessor, size * out.components, where, subset,
                      [&](std::size_t i, std::span<const std::byte> bytes, std::size_t at) {
+                         if (accessor.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT) {
+                             assume(at + size * out.components <= bytes.size());
+                             std::memcpy(&out.values[i * out.components], bytes.data() + at, size * out.components);
+                             return;
+                         }
                          for (std::size_t c = 0; c < out.components; ++c)
                              out.values[i * out.components + c] =
                                  component(bytes, at + c * size, accessor.componentType, accessor.normalized);
                      });
     const auto bad =
         std::find_if(out.values.begin(), out.values.end(), [](float value) { return !std::isfinite(value); });
-    if (bad != out.values.end())
-        throw fault(pointer,
-                    fmt::format("accessor {}, element {}: {} is not a finite number [ACCESSOR_INVALID_FLOAT]", index,
-                                static_cast<std::size_t>(bad - out.values.begin()) / out.components, *bad));
+    if (bad != out.values.end()) {
+        const std::size_t place = static_cast<std::size_t>(bad - out.values.begin()) / out.components;
+        throw fault(pointer, fmt::format("accessor {}, element {}: {} is not a finite number [ACCESSOR_INVALID_FLOAT]",
+                                         index, subset ? (*subset)[place] : place, *bad));
+    }
     return out;
 }
 
-std::vector<std::uint32_t> AccessorReader::indices(int index, const std::string& pointer)
+std::vector<std::uint32_t> AccessorReader::indices(int index, const std::string& pointer) const
 {
     const auto& accessor = source_.model.accessors.at(static_cast<std::size_t>(index));
     const int type = accessor.componentType;
@@ -189,10 +196,9 @@ std::vector<std::uint32_t> AccessorReader::indices(int index, const std::string&
                         index));
     const std::size_t size = size_of(type);
     const std::uint32_t restart = size == 1 ? 0xffu : size == 2 ? 0xffffu : 0xffffffffu;
-    spend(accessor.count * sizeof(std::uint32_t), pointer);
     std::vector<std::uint32_t> out(accessor.count);
     for_each_element(
-        source_, accessor, size, fmt::format("/accessors/{}", index),
+        source_, accessor, size, fmt::format("/accessors/{}", index), std::nullopt,
         [&](std::size_t i, std::span<const std::byte> bytes, std::size_t at) { out[i] = whole(bytes, at, type); });
     const auto bad = std::find(out.begin(), out.end(), restart);
     if (bad != out.end())

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,23 +18,23 @@ struct Floats {
     float at(std::size_t element, std::size_t component) const { return values[element * components + component]; }
 };
 
-/// Reads accessors that preflight has checked. Adds up what was asked for, and refuses to go on beyond 8 GiB: many
-/// primitives may share one accessor.
+/// Which elements to read: all, or these, increasing.
+using Subset = std::optional<std::vector<std::uint32_t>>;
+
+/// Reads accessors that preflight has checked.
 class AccessorReader {
  public:
     explicit AccessorReader(const Source& source) : source_(source) {}
 
     /// `pointer`: where the accessor is used, for messages. `components` lists how many each element may have.
-    Floats floats(int accessor, std::initializer_list<std::size_t> components, const std::string& pointer);
+    Floats floats(int accessor, std::initializer_list<std::size_t> components, const std::string& pointer,
+                  const Subset& subset = {}) const;
     /// Unsigned scalars. The largest value of the type is refused: it would restart a primitive.
-    std::vector<std::uint32_t> indices(int accessor, const std::string& pointer);
+    std::vector<std::uint32_t> indices(int accessor, const std::string& pointer) const;
     std::size_t count(int accessor) const;
 
  private:
-    void spend(std::size_t bytes, const std::string& pointer);
-
     const Source& source_;
-    std::size_t spent_ = 0;
 };
 
 }  // namespace etalon::gltf

@@ -11,10 +11,40 @@ namespace etalon::gltf {
 
 namespace {
 
+constexpr double kMaxBytes = 8.0 * (1 << 30);
+
+// Bytes that a primitive's own copy of its vertices and indices takes: primitives may share accessors, copies do not.
+double bytes_of(const Model& model, const tinygltf::Primitive& primitive)
+{
+    const auto count = [&](int accessor) {
+        return static_cast<double>(model.accessors.at(static_cast<std::size_t>(accessor)).count);
+    };
+    const auto position = primitive.attributes.find("POSITION");
+    if (position == primitive.attributes.end()) return 0;
+    const double vertices = count(position->second);
+    const double indices = primitive.indices < 0 ? vertices : count(primitive.indices);
+    return static_cast<double>(primitive.attributes.size()) * sizeof(vec4) * std::min(vertices, indices) +
+           3 * sizeof(std::uint32_t) * indices;
+}
+
+// The vertices that `indices` name, increasing, where they are under half of all: primitives of one mesh often share
+// one long list. The indices then refer to places in the result.
+Subset take_used(std::vector<std::uint32_t>& indices, std::size_t vertices)
+{
+    if (indices.size() >= vertices / 2) return std::nullopt;
+    std::vector<std::uint32_t> used = indices;
+    std::sort(used.begin(), used.end());
+    used.erase(std::unique(used.begin(), used.end()), used.end());
+    for (std::uint32_t& i : indices)
+        i = static_cast<std::uint32_t>(std::lower_bound(used.begin(), used.end(), i) - used.begin());
+    return used;
+}
+
 class Meshes {
  public:
     Meshes(const Source& source, Scene& scene) : source_(source), scene_(scene), reader_(source)
     {
+        check_memory();
         for (std::size_t m = 0; m < source_.model.meshes.size(); ++m) {
             const tinygltf::Mesh& in = source_.model.meshes[m];
             Mesh out;
@@ -26,6 +56,18 @@ class Meshes {
     }
 
  private:
+    void check_memory() const
+    {
+        double bytes = 0;
+        for (const tinygltf::Mesh& mesh : source_.model.meshes)
+            for (const tinygltf::Primitive& primitive : mesh.primitives) bytes += bytes_of(source_.model, primitive);
+        if (bytes > kMaxBytes)
+            throw fault(
+                "/meshes",
+                fmt::format("the vertices of all primitives need {:.3g} GiB; the limit is 8", bytes / (1 << 30)),
+                "give each primitive its own part of the vertices, or split the file");
+    }
+
     void convert(const tinygltf::Primitive& in, const std::string& pointer, Mesh& mesh)
     {
         if (!in.attributes.contains("POSITION")) {
@@ -33,17 +75,19 @@ class Meshes {
             return;
         }
         if (!in.targets.empty()) has_morph_targets_ = true;
-        Primitive out;
-        read_attributes(in, pointer, out);
         const auto mode = unrolled_mode(in.mode);
         if (!mode)
             throw fault(pointer + "/mode", fmt::format("{} [VALUE_NOT_IN_LIST]", in.mode),
                         "0 (points) to 6 (triangle fan)");
+        const std::size_t vertices = reader_.count(in.attributes.at("POSITION"));
+        std::vector<std::uint32_t> indices = read_indices(in, pointer, vertices);
+        const Subset used = take_used(indices, vertices);
+        Primitive out;
+        read_attributes(in, pointer, vertices, used, out);
         out.topology = topology_of(*mode);
-        out.indices = unrolled(*mode, read_indices(in, pointer, out.positions.size()));
+        out.indices = unrolled(*mode, std::move(indices));
         out.material = material_of(in, out);
         if (out.topology == Topology::triangles) drop_triangles_without_area(out);
-        compact(out);
         finish_normals(out);
         finish_tangents(in, pointer, out);
         mesh.primitives.push_back(std::move(out));
@@ -55,41 +99,38 @@ class Meshes {
         return static_cast<DrawMode>(mode);
     }
 
-    Floats attribute(const tinygltf::Primitive& in, const std::string& name,
-                     std::initializer_list<std::size_t> components, const std::string& pointer, std::size_t vertices)
+    void read_attributes(const tinygltf::Primitive& in, const std::string& pointer, std::size_t vertices,
+                         const Subset& used, Primitive& out)
     {
-        const auto found = in.attributes.find(name);
-        if (found == in.attributes.end()) return {};
-        const std::string at = pointer + "/attributes/" + name;
-        if (const std::size_t count = reader_.count(found->second); vertices != 0 && count != vertices)
-            throw fault(at, fmt::format("{} elements for {} positions [MESH_PRIMITIVE_UNEQUAL_ACCESSOR_COUNT]", count,
-                                        vertices));
-        return reader_.floats(found->second, components, at);
-    }
-
-    void read_attributes(const tinygltf::Primitive& in, const std::string& pointer, Primitive& out)
-    {
+        const auto attribute = [&](const char* name, std::initializer_list<std::size_t> components) -> Floats {
+            const auto found = in.attributes.find(name);
+            if (found == in.attributes.end()) return {};
+            const std::string at = fmt::format("{}/attributes/{}", pointer, name);
+            if (const std::size_t count = reader_.count(found->second); count != vertices)
+                throw fault(at, fmt::format("{} elements for {} positions [MESH_PRIMITIVE_UNEQUAL_ACCESSOR_COUNT]",
+                                            count, vertices));
+            return reader_.floats(found->second, components, at, used);
+        };
         const auto triples = [](const Floats& in3) {
             std::vector<vec3> values;
             values.reserve(in3.count);
             for (std::size_t i = 0; i < in3.count; ++i) values.emplace_back(in3.at(i, 0), in3.at(i, 1), in3.at(i, 2));
             return values;
         };
-        out.positions = triples(attribute(in, "POSITION", {3}, pointer, 0));
-        const std::size_t vertices = out.positions.size();
-        out.normals = triples(attribute(in, "NORMAL", {3}, pointer, vertices));
+        out.positions = triples(attribute("POSITION", {3}));
+        out.normals = triples(attribute("NORMAL", {3}));
         out.has_normals = !out.normals.empty();
         for (std::size_t set = 0; set < 2; ++set) {
-            const Floats uv = attribute(in, set == 0 ? "TEXCOORD_0" : "TEXCOORD_1", {2}, pointer, vertices);
+            const Floats uv = attribute(set == 0 ? "TEXCOORD_0" : "TEXCOORD_1", {2});
             for (std::size_t i = 0; i < uv.count; ++i) out.uv[set].emplace_back(uv.at(i, 0), uv.at(i, 1));
         }
-        const Floats color = attribute(in, "COLOR_0", {3, 4}, pointer, vertices);
+        const Floats color = attribute("COLOR_0", {3, 4});
         for (std::size_t i = 0; i < color.count; ++i)
             out.colors.emplace_back(color.at(i, 0), color.at(i, 1), color.at(i, 2),
                                     color.components == 4 ? color.at(i, 3) : 1.0f);
         // glTF 2.0 §3.7.2.1: without normals given tangents are ignored.
         if (!out.has_normals || !wants_tangents(in.material)) return;
-        const Floats tangent = attribute(in, "TANGENT", {4}, pointer, vertices);
+        const Floats tangent = attribute("TANGENT", {4});
         for (std::size_t i = 0; i < tangent.count; ++i) {
             const vec3 direction(tangent.at(i, 0), tangent.at(i, 1), tangent.at(i, 2));
             const float l = length(direction);

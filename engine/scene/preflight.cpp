@@ -33,27 +33,64 @@ std::string brief(const json& value)
     return text;
 }
 
+// Counts what is in a JSON text while nothing is built from it yet.
+class Counter : public nlohmann::json_sax<json> {
+ public:
+    explicit Counter(const GltfLimits& limits) : limits_(limits) {}
+
+    bool null() override { return value(); }
+    bool boolean(bool) override { return value(); }
+    bool number_integer(number_integer_t) override { return value(); }
+    bool number_unsigned(number_unsigned_t) override { return value(); }
+    bool number_float(number_float_t, const string_t&) override { return value(); }
+    bool string(string_t&) override { return value(); }
+    bool binary(binary_t&) override { return value(); }
+    bool start_object(std::size_t) override { return open(); }
+    bool start_array(std::size_t) override { return open(); }
+    bool key(string_t&) override { return true; }
+    bool end_object() override { return close(); }
+    bool end_array() override { return close(); }
+    bool parse_error(std::size_t, const std::string&, const json::exception& error) override
+    {
+        throw Error(Blame::input, fmt::format("this is not glTF: {} [INVALID_JSON]", error.what()),
+                    "a .gltf file is JSON text, a .glb file begins with the letters glTF");
+    }
+
+ private:
+    bool value()
+    {
+        if (++values_ > limits_.json_values)
+            throw Error(Blame::input, fmt::format("the JSON has more than {} values", limits_.json_values),
+                        "split the file");
+        return true;
+    }
+    bool open()
+    {
+        if (++depth_ > limits_.json_depth)
+            throw Error(Blame::input, fmt::format("the JSON is nested more than {} deep", limits_.json_depth),
+                        "no glTF needs that: look into extras and extensions");
+        return value();
+    }
+    bool close()
+    {
+        --depth_;
+        return true;
+    }
+
+    const GltfLimits& limits_;
+    std::size_t depth_ = 0;
+    std::size_t values_ = 0;
+};
+
 json parse(std::string_view text, const GltfLimits& limits)
 {
     while (text.ends_with('\0')) text.remove_suffix(1);  // some writers pad the JSON chunk with zeros instead of spaces
     if (text.size() > limits.json_bytes)
         throw Error(Blame::input, fmt::format("{} bytes of JSON; the limit is {}", text.size(), limits.json_bytes));
-    std::size_t values = 0;
-    const auto count = [&](int depth, json::parse_event_t, json&) {
-        if (static_cast<std::size_t>(depth) > limits.json_depth)
-            throw Error(Blame::input, fmt::format("the JSON is nested more than {} deep", limits.json_depth),
-                        "no glTF needs that: look into extras and extensions");
-        if (++values > limits.json_values)
-            throw Error(Blame::input, fmt::format("the JSON has more than {} values", limits.json_values),
-                        "split the file");
-        return true;
-    };
-    try {
-        return json::parse(text.begin(), text.end(), count);
-    } catch (const json::exception& error) {
-        throw Error(Blame::input, fmt::format("this is not glTF: {} [INVALID_JSON]", error.what()),
-                    "a .gltf file is JSON text, a .glb file begins with the letters glTF");
-    }
+    // Two passes, not one with a callback: nlohmann's callback parser takes time quadratic in the elements of an array.
+    Counter counter(limits);
+    json::sax_parse(text.begin(), text.end(), &counter);
+    return json::parse(text.begin(), text.end());
 }
 
 // Which collection each index in the document points into; * stands for every element or member.

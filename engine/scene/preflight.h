@@ -25,9 +25,9 @@ struct GltfBuffer {
 
 /// Where an image is: in a buffer or behind a URI that has not been followed yet.
 struct GltfImage {
-    std::string name;  ///< for messages
-    std::string uri;   ///< when there are no bytes
-    std::optional<std::span<const std::byte>> bytes;   ///< empty when its buffer has no data in the file
+    std::string name;                                 ///< for messages
+    std::string uri;                                  ///< when there are no bytes
+    std::optional<std::span<const std::byte>> bytes;  ///< empty when its buffer has no data in the file
 };
 
 /// A glTF file whose every index, range and offset has been checked, ready for a parser that trusts them.

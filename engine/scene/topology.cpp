@@ -98,20 +98,6 @@ void drop_triangles_without_area(Primitive& primitive)
     primitive.indices.resize(3 * kept);
 }
 
-void compact(Primitive& primitive)
-{
-    std::vector<std::uint32_t> place(primitive.positions.size(), kNone);
-    std::vector<std::uint32_t> order;
-    for (const std::uint32_t i : primitive.indices)
-        if (place[i] == kNone) {
-            place[i] = static_cast<std::uint32_t>(order.size());
-            order.push_back(i);
-        }
-    if (order.size() > primitive.positions.size() / 2) return;
-    take_vertices(primitive, order);
-    for (std::uint32_t& i : primitive.indices) i = place[i];
-}
-
 void finish_normals(Primitive& primitive)
 {
     if (!primitive.has_normals) {

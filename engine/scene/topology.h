@@ -18,9 +18,6 @@ std::vector<std::uint32_t> unrolled(DrawMode mode, std::vector<std::uint32_t> in
 /// Removes triangles whose area is exactly zero: they cover nothing, and have no normal.
 void drop_triangles_without_area(Primitive& primitive);
 
-/// Removes vertices that no index names, where most are such: primitives of one mesh often share one long list.
-void compact(Primitive& primitive);
-
 /// Unit normals: given ones are normalized (a zero one becomes that of a face at it); where there are none, each
 /// triangle gets its own three vertices with the geometric normal. Points and lines without normals keep none.
 void finish_normals(Primitive& primitive);
