@@ -1,4 +1,4 @@
-// A program of another project: renders a built-in scene with the reference and checks that the picture is one.
+// A program of another project: renders a built-in scene on the CPU and on the Vulkan device, and checks that both are pictures.
 #include <cstdio>
 
 #include "engine/image/develop.h"
@@ -7,20 +7,30 @@
 #include "engine/render/render.h"
 #include "engine/scene/load.h"
 
+namespace {
+
+bool is_picture(const etalon::Film& film)
+{
+    const etalon::FilmCheck findings = check(film);
+    return film.width == 24 && findings.nan_pixels == 0 && !findings.single_colour;
+}
+
+}  // namespace
+
 int main(int, char** argv)
 {
     using namespace etalon;
     const Scene scene = load_scene("builtin:cornell");
     const PosedScene posed = pose(scene, {.size = ivec2(24, 24)});
-    const RenderSettings settings{.renderer = Renderer::reference, .spp = 4};
-    const Film film = reference::render_path(posed, require(posed, settings), settings, Progress{});
-    write_png(develop(film, {}), {}, argv[1]);
+    const RenderSettings settings{.spp = 4};
+    const Requirements required = require(posed, settings);
 
-    // The device side links as well; whether a device is there is not asked here.
-    const auto vulkan = static_cast<Film (*)(gpu::Device&, const PosedScene&, const Requirements&,
-                                             const RenderSettings&, const Progress&)>(&render_path);
-    const FilmCheck findings = check(film);
-    const bool sound = vulkan != nullptr && film.samples == 4 && findings.nan_pixels == 0 && !findings.single_colour;
-    std::puts(sound ? "consumer: a picture" : "consumer: no picture");
+    const Film reference = reference::render_path(posed, required, settings, Progress{});
+    gpu::Device device;
+    const Film raster = render_raster(device, posed, required, settings, Progress{});
+    write_png(develop(reference, {}), {}, argv[1]);
+
+    const bool sound = is_picture(reference) && is_picture(raster);
+    std::puts(sound ? "consumer: two pictures" : "consumer: no pictures");
     return sound ? 0 : 1;
 }
