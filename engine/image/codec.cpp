@@ -80,6 +80,20 @@ Format require_format(std::span<const std::byte> bytes, std::span<const Format> 
               "convert it to one of: " + list);
 }
 
+/// Every chunk to IEND lies inside the file. OpenImageIO leaves its reader by longjmp when it meets the end, past
+/// destructors, so it must not meet it.
+bool png_is_whole(std::span<const std::byte> bytes)
+{
+    for (std::size_t i = 8; i + 12 <= bytes.size();) {
+        std::size_t size = 0;
+        for (std::size_t k = 0; k < 4; ++k) size = size << 8 | std::to_integer<std::size_t>(bytes[i + k]);
+        if (size > bytes.size() - i - 12) return false;
+        if (std::memcmp(&bytes[i + 4], "IEND", 4) == 0) return true;
+        i += 12 + size;
+    }
+    return false;
+}
+
 /// libjpeg fills what is missing of a cut file with grey and succeeds. In the coded data 0xff is followed by 0 or a
 /// restart marker alone, so that the first end marker after the start of the scan is the end.
 bool jpeg_is_whole(std::span<const std::byte> bytes)
@@ -222,7 +236,8 @@ std::vector<std::byte> encode(Format format, const OIIO::ImageSpec& spec, const 
 Picture decode(std::span<const std::byte> bytes, std::span<const Format> accepted, const std::string& name)
 {
     const Format format = require_format(bytes, accepted, name);
-    if (format == Format::jpeg && !jpeg_is_whole(bytes)) throw bad(name, "the file ends early");
+    if ((format == Format::jpeg && !jpeg_is_whole(bytes)) || (format == Format::png && !png_is_whole(bytes)))
+        throw bad(name, "the file ends early");
     try {
         Picture picture = decode_guarded(bytes, format, name);
         if (format == Format::webp && picture.channels.size() == 4) restore_color(picture, bytes, name);

@@ -122,9 +122,7 @@ TEST(DecodeTexels, every_cut_is_noticed)
                                                 {"webp", samples::lossy_webp()}};
     for (const auto& [name, bytes] : whole) {
         decode_texels(bytes, name);
-        // A PNG is whole once its pixels are; what follows them (checksums, IEND) may be missing.
-        const std::size_t end = name == "png" ? bytes.size() - 24 : bytes.size();
-        for (std::size_t size = 0; size < end; ++size)
+        for (std::size_t size = 0; size < bytes.size(); ++size)
             EXPECT_THROW(decode_texels(std::span(bytes).first(size), name), Error)
                 << name << " of " << size << " bytes";
     }
@@ -140,19 +138,18 @@ TEST(DecodeTexels, no_damage_of_a_byte_crashes_it)
         {"lossless", samples::flat_webp(3, 3, {9, 8, 7, 6})}};
     int refused = 0;
     for (const auto& [name, bytes] : whole)
-        for (std::size_t i = 0; i < bytes.size(); ++i)
-            for (const auto flip : {0x01, 0x10, 0x80, 0xff}) {
-                Bytes bad = bytes;
-                bad[i] ^= std::byte(flip);
-                try {
-                    const Texels texels = decode_texels(bad, name);
-                    ASSERT_EQ(texels.is_8_bit ? texels.bytes.size() : texels.wide.size(),
-                              4 * std::size_t(texels.width) * std::size_t(texels.height));
-                } catch (const Error&) {
-                    ++refused;
-                }
+        for (std::size_t i = 0; i < bytes.size(); ++i) {
+            Bytes bad = bytes;
+            bad[i] ^= std::byte(i % 3 == 0 ? 0x01 : i % 3 == 1 ? 0x90 : 0xff);
+            try {
+                const Texels texels = decode_texels(bad, name);
+                ASSERT_EQ(texels.is_8_bit ? texels.bytes.size() : texels.wide.size(),
+                          4 * std::size_t(texels.width) * std::size_t(texels.height));
+            } catch (const Error&) {
+                ++refused;
             }
-    EXPECT_GT(refused, 100);
+        }
+    EXPECT_GT(refused, 50);
 }
 
 /// The chunks of a PNG: type and data, in order.
