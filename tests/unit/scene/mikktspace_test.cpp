@@ -84,7 +84,7 @@ void expect_agreement(const Soup& soup, const std::string& what)
     for (std::size_t i = 0; i < ours.size(); ++i) {
         // A zero tangent is the package's way to say that the corner's faces have no angle there.
         if (is_degenerate(soup, i / 3) || vec3(truth[i]) == vec3(0)) continue;
-        const double angle = angle_between(dvec3(vec3(ours[i])), dvec3(vec3(truth[i])));
+        const double angle = angle_between(normalize(dvec3(vec3(ours[i]))), normalize(dvec3(vec3(truth[i]))));
         ASSERT_EQ(ours[i].w, truth[i].w) << what << ": sign of corner " << i;
         ASSERT_LE(angle, kLargestAngle) << what << ": corner " << i;
         largest = std::max(largest, angle);
