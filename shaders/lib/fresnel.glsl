@@ -41,7 +41,8 @@ float conductor_fresnel(float cosine, float eta, float k)
     float s2 = max(1.0 - cosine * cosine, 0.0) * m * m;
     float t0 = e2 - k2 - s2;
     float a2b2 = sqrt(t0 * t0 + 4.0 * e2 * k2);
-    float a = sqrt(max(0.5 * (a2b2 + t0), 0.0));
+    // (a2b2 + t0) / 2, without the cancellation of t0 < 0.
+    float a = sqrt(t0 < 0.0 ? 2.0 * e2 * k2 / (a2b2 - t0) : 0.5 * (a2b2 + t0));
     float t1 = a2b2 + c2;
     float t2 = 2.0 * a * cosine * m;
     float r_s = (t1 - t2) / (t1 + t2);
