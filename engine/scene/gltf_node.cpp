@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/math/transform.h"
 #include "engine/scene/gltf_accessor.h"
 #include "engine/scene/gltf_import.h"
 
@@ -13,20 +14,6 @@ namespace {
 
 constexpr double kHuge = std::numeric_limits<double>::max();
 constexpr std::size_t kMaxInstances = 10'000'000;
-
-dmat4 from_parts(const dvec3& translation, const dquat& rotation, const dvec3& scale)
-{
-    const dmat3 turn = glm::mat3_cast(rotation);
-    return dmat4(dvec4(turn[0] * scale.x, 0), dvec4(turn[1] * scale.y, 0), dvec4(turn[2] * scale.z, 0),
-                 dvec4(translation, 1));
-}
-
-dquat unit_quaternion(double x, double y, double z, double w)
-{
-    const dquat q(w, x, y, z);
-    const double l = glm::length(q);
-    return l > 0 && std::isfinite(l) ? q / l : dquat(1, 0, 0, 0);
-}
 
 dmat4 transform_of(const tinygltf::Node& in, const std::string& pointer)
 {
@@ -51,10 +38,9 @@ dmat4 transform_of(const tinygltf::Node& in, const std::string& pointer)
     const auto vector = [](const std::vector<double>& v, double standard) {
         return v.empty() ? dvec3(standard) : dvec3(v[0], v[1], v[2]);
     };
-    const dquat rotation = in.rotation.empty()
-                               ? dquat(1, 0, 0, 0)
-                               : unit_quaternion(in.rotation[0], in.rotation[1], in.rotation[2], in.rotation[3]);
-    return from_parts(vector(in.translation, 0), rotation, vector(in.scale, 1));
+    const dquat rotation =
+        in.rotation.empty() ? dquat(1, 0, 0, 0) : dquat(in.rotation[3], in.rotation[0], in.rotation[1], in.rotation[2]);
+    return compose(vector(in.translation, 0), rotation, vector(in.scale, 1));
 }
 
 double positive(double value, const std::string& pointer)
@@ -139,10 +125,10 @@ std::vector<dmat4> instances_of(const Value& extension, AccessorReader& reader, 
         return in.count == 0 ? dvec3(standard) : dvec3(in.at(i, 0), in.at(i, 1), in.at(i, 2));
     };
     for (std::size_t i = 0; i < count; ++i) {
-        const dquat turn = rotation.count == 0 ? dquat(1, 0, 0, 0)
-                                               : unit_quaternion(rotation.at(i, 0), rotation.at(i, 1),
-                                                                 rotation.at(i, 2), rotation.at(i, 3));
-        out.push_back(from_parts(vector(translation, i, 0), turn, vector(scale, i, 1)));
+        const dquat turn = rotation.count == 0
+                               ? dquat(1, 0, 0, 0)
+                               : dquat(rotation.at(i, 3), rotation.at(i, 0), rotation.at(i, 1), rotation.at(i, 2));
+        out.push_back(compose(vector(translation, i, 0), turn, vector(scale, i, 1)));
     }
     return out;
 }
