@@ -42,6 +42,14 @@ bool is_dielectric(BsdfModel model)
     return model == BsdfModel::dielectric || model == BsdfModel::rough_dielectric;
 }
 
+/// What cannot be left out without drawing something else is refused.
+void insist(const Requirements& required, Feature feature, const char* kind, const std::string& who)
+{
+    if (required.has(feature)) return;
+    throw Error(Blame::input,
+                fmt::format("{} \"{}\" needs the feature {}, which the requirements lack", kind, who, name(feature)));
+}
+
 std::uint32_t environment_kind(const Environment& environment, const Requirements& required)
 {
     if (environment.is_black()) return EnvironmentKind::none;
@@ -57,7 +65,9 @@ RasterVariants::RasterVariants(const PosedScene& posed, const Requirements& requ
       blinn_phong_(settings.shading == Shading::blinn_phong && required.has(Feature::blinn_phong)),
       samples_(settings.msaa > 1 && required.has(Feature::msaa) ? 4 : 1),
       environment_(environment_kind(posed.environment, required))
-{}
+{
+    if (posed.view.camera.orthographic) insist(required, Feature::orthographic, "camera", posed.view.camera.name);
+}
 
 RasterVariant RasterVariants::of(const Draw& draw, RasterTarget target) const
 {
@@ -118,16 +128,14 @@ void RasterVariants::set_frame(RasterVariant& variant) const
     variant.set(RasterConstant::punctual_lights, !posed_.lights.empty() && required_.has(Feature::punctual_lights));
     variant.set(RasterConstant::emitters, required_.has(Feature::emission));
     variant.set(RasterConstant::blinn_phong, blinn_phong_);
-    variant.set(RasterConstant::orthographic, posed_.view.camera.orthographic && required_.has(Feature::orthographic));
+    variant.set(RasterConstant::orthographic, posed_.view.camera.orthographic);
     variant.set(RasterConstant::samples, variant.target == RasterTarget::aovs ? 1 : samples_);
 }
 
 void RasterVariants::set_material(RasterVariant& variant, const Material& material) const
 {
     const Model model = describe(material.model);
-    if (!required_.has(model.feature))
-        throw Error(Blame::input, fmt::format("material \"{}\" needs the feature {}, which the requirements lack",
-                                              material.name, name(model.feature)));
+    insist(required_, model.feature, "material", material.name);
     const bool emits = material.emission != dvec3(0) && required_.has(Feature::emission);
     const bool occludes = environment_ != EnvironmentKind::none && material.occlusion_strength != 0;
     variant.set(RasterConstant::model, model.code);

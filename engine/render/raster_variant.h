@@ -53,7 +53,7 @@ struct RasterVariant {
 };
 
 /// The variants of one picture, as its requirements allow: a feature whose bit is not set is left out, whatever the
-/// scene says. Throws Error(input) where a material's model is not among the requirements.
+/// scene says. Throws Error(input) where a material's model, or an orthographic camera, is not among the requirements.
 class RasterVariants {
  public:
     RasterVariants(const PosedScene& posed, const Requirements& required, const RenderSettings& settings);
