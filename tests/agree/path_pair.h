@@ -22,11 +22,6 @@ struct Shot {
 Film by_vulkan(gpu::Device& device, const Scene& scene, const Shot& shot);
 Film by_reference(const Scene& scene, const Shot& shot);
 
-/// Float on the device against double: a device's exp2 and log2 (sRGB decoding), division and square root are off by a
-/// few ulp each, and a path multiplies some ten of them (NUMERICS §1: 3 + 2|x| ulp for exp2). 100 ulp of slack is still
-/// a hundredth of the 1% faults.
-inline constexpr double kDeviceRounding = 1e-5;
-
 /// How often all of tests/agree/path together would raise a false alarm, and each of its comparisons.
 inline constexpr double kFalseAlarm = 1e-3;
 inline constexpr int kComparisons = 40;

@@ -15,6 +15,8 @@ struct Subject {
     std::string name;  ///< built-in scene, or a file of the shared assets
     Shot shot{};
     double must_find = 0.01;  ///< relative difference of the whole picture that the test finds with probability 0.9
+    std::string
+        clear{};  ///< a material made invisible: its transmission is not modelled yet, and the lamps are behind it
 };
 
 void PrintTo(const Subject& subject, std::ostream* out)
@@ -80,7 +82,12 @@ TEST_P(PathAgreesOnAsset, ST2_no_tile_differs)
 {
     const auto file = test::find_shared("assets/" + GetParam().name);
     if (!file) GTEST_SKIP() << "no shared inputs";
-    const Scene scene = load_scene(file->string());
+    Scene scene = load_scene(file->string());
+    for (Material& material : scene.materials) {
+        if (material.name != GetParam().clear) continue;
+        material.alpha_mode = AlphaMode::blend;
+        material.base_color.w = 0;
+    }
     gpu::Device device;
     expect_agreement(GetParam().name, by_vulkan(device, scene, GetParam().shot), by_reference(scene, GetParam().shot),
                      GetParam().must_find);
@@ -96,11 +103,16 @@ INSTANTIATE_TEST_SUITE_P(
         Subject{"khronos/TextureSettingsTest/TextureSettingsTest.glb"},
         Subject{"khronos/MetalRoughSpheresNoTextures/MetalRoughSpheresNoTextures.glb"},
         Subject{"khronos/OrientationTest/OrientationTest.glb"}, Subject{"khronos/BoxVertexColors/BoxVertexColors.glb"},
-        Subject{"khronos/UnlitTest/UnlitTest.glb"}, Subject{"khronos/EmissiveStrengthTest/EmissiveStrengthTest.glb"},
-        Subject{"khronos/LightsPunctualLamp/LightsPunctualLamp.gltf"}, Subject{"khronos/MultiUVTest/MultiUVTest.glb"},
+        Subject{"khronos/UnlitTest/UnlitTest.glb"},
+        Subject{"khronos/EmissiveStrengthTest/EmissiveStrengthTest.glb",
+                {.size = {96, 64}, .spp = 512, .max_depth = 4},
+                0.02},
+        Subject{
+            "khronos/LightsPunctualLamp/LightsPunctualLamp.gltf", {.size = {32, 32}, .spp = 2048, .max_depth = 2}, 0.1},
+        Subject{"khronos/MultiUVTest/MultiUVTest.glb"},
         Subject{"khronos/TextureTransformTest/TextureTransformTest.gltf"},
         Subject{"khronos/VertexColorTest/VertexColorTest.glb"},
-        Subject{"interiors-converted/bathroom/bathroom.glb", {.size = {64, 48}, .spp = 256}, 0.05}),
+        Subject{"interiors-converted/bathroom/bathroom.glb", {.size = {64, 48}, .spp = 256}, 0.05, "BulbGlass"}),
     test_name);
 
 }  // namespace

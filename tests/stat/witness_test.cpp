@@ -106,7 +106,7 @@ void expect_same_as_witness(const Witness& witness, Maker maker, std::uint64_t s
     const Film ours = make(maker, *folder / (witness.name + ".gltf"), asked_spp().value_or(spp));
     const Film theirs = testimony(*folder, witness.batches);
     const Comparison found =
-        compare(ours, theirs, {.false_alarm = sidak_level(kFalseAlarm, kComparisons), .rounding = 1e-5});
+        compare(ours, theirs, {.false_alarm = sidak_level(kFalseAlarm, kComparisons), .rounding = kDeviceRounding});
     ASSERT_TRUE(found.test.has_value());
     const StatisticalTest& test = *found.test;
     std::printf(
