@@ -105,8 +105,9 @@ Scene normals()
     for (vec2& uv : floor.uv[0]) uv = uv * 2.0f;
     floor.tangents.assign(4, vec4(1, 0, 0, 1));
     Primitive ball = make_sphere(dvec3(0, 1, 0), 1, 64, 32);
-    for (const vec2& uv : ball.uv[0]) {
+    for (vec2& uv : ball.uv[0]) {
         const double turn = 2 * kPi * double(uv.x);
+        uv = uv * vec2(4, 2);
         ball.tangents.emplace_back(vec3(dvec3(std::cos(turn), 0, -std::sin(turn))), 1.0f);
     }
     const Index material = build.material(std::move(bumpy));
@@ -278,7 +279,7 @@ Scene wires()
     build.show("spiral", std::move(points), material);
     build.show("core", make_box(dvec3(0), dvec3(0.5), 0.5), build.lambert("core", dvec3(0.6, 0.6, 0.7)));
     build.environment(sky(0.6));
-    build.camera("corner", 40, dvec3(2.6, 1.9, 3.6), dvec3(0));
+    build.camera("corner", 42, dvec3(2.6, 1.9, 3.9), dvec3(0));
     build.size(360, 360);
     return std::move(build).finish();
 }
@@ -290,8 +291,8 @@ Scene orthographic()
     Camera camera;
     camera.name = "plan";
     camera.orthographic = true;
-    camera.ymag = 2;
-    camera.xmag = 2 * 4.0 / 3;
+    camera.ymag = 2.4;
+    camera.xmag = 2.4 * 4.0 / 3;
     build.camera(std::move(camera), look_from(dvec3(4, 4, 6), dvec3(0, 0.3, 0)));
     return std::move(build).finish();
 }

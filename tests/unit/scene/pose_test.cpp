@@ -230,8 +230,8 @@ TEST(View, keeps_the_height_of_an_orthographic_view_whatever_the_picture_is_wide
     PoseSettings settings;
     settings.size = ivec2(500, 100);
     const View view = pose(scene, settings).view;
-    EXPECT_EQ(view.camera.ymag, 2);
-    EXPECT_EQ(view.camera.xmag, 10);
+    EXPECT_EQ(view.camera.ymag, 2.4);
+    EXPECT_EQ(view.camera.xmag, 12);
 }
 
 TEST(View, takes_its_size_from_the_settings_then_the_scene_then_the_standard)
