@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/math/transform.h"
 #include "engine/render/material.h"
 
 namespace etalon {
@@ -26,11 +27,6 @@ double depth_of_bounds(const View& view, const dvec3& low, const dvec3& high)
     return depth;
 }
 
-dmat4 from_rows(const dvec4& a, const dvec4& b, const dvec4& c, const dvec4& d)
-{
-    return glm::transpose(dmat4(a, b, c, d));
-}
-
 }  // namespace
 
 RasterProjection project(const View& view, const dvec3& bounds_min, const dvec3& bounds_max)
@@ -40,18 +36,14 @@ RasterProjection project(const View& view, const dvec3& bounds_min, const dvec3&
     if (!camera.orthographic) {
         const double half_height = std::tan(camera.yfov / 2);
         projection.film_half = dvec2(half_height * view.width / view.height, half_height);
-        projection.clip_from_camera =
-            from_rows({1 / projection.film_half.x, 0, 0, 0}, {0, -1 / projection.film_half.y, 0, 0},
-                      {0, 0, 0, projection.near}, {0, 0, -1, 0});
+        projection.clip_from_camera = perspective(camera.yfov, double(view.width) / view.height, camera.znear);
         return projection;
     }
     projection.film_half = dvec2(camera.xmag, camera.ymag);
     // 1%: what lies on the far side of the bounds is still nearer than the cleared depth.
     const double depth = std::max(depth_of_bounds(view, bounds_min, bounds_max), projection.near);
     projection.far = depth + 0.01 * (depth - projection.near) + 1e-3 * depth + 1e-6;
-    const double range = projection.far - projection.near;
-    projection.clip_from_camera = from_rows({1 / camera.xmag, 0, 0, 0}, {0, -1 / camera.ymag, 0, 0},
-                                            {0, 0, 1 / range, projection.far / range}, {0, 0, 0, 1});
+    projection.clip_from_camera = orthographic(camera.xmag, camera.ymag, projection.near, projection.far);
     return projection;
 }
 
@@ -96,8 +88,7 @@ void place(const dmat4& world_from_object, const dvec3& eye, shared::RasterDraw&
     const dmat3 unit = m / (largest > 0 ? largest : 1.0);
     const double sign = is_mirrored(world_from_object) ? -1 : 1;
     draw.handedness = static_cast<float>(sign);
-    draw.normal_matrix =
-        mat3(dmat3(sign * cross(unit[1], unit[2]), sign * cross(unit[2], unit[0]), sign * cross(unit[0], unit[1])));
+    draw.normal_matrix = mat3(sign * cofactor(unit));
 }
 
 bool is_mirrored(const dmat4& world_from_object)
