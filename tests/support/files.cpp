@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdlib>
+#include <fstream>
 #include <string>
 
 #include "engine/base/error.h"
@@ -63,6 +64,20 @@ FileSizeLimit::~FileSizeLimit()
     limit.rlim_cur = old_limit_;
     ::setrlimit(RLIMIT_FSIZE, &limit);
     std::signal(SIGXFSZ, old_handler_);
+}
+
+std::uint64_t address_space()
+{
+    std::uint64_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    return pages * std::uint64_t(::sysconf(_SC_PAGESIZE));
+}
+
+void limit_memory(std::uint64_t more)
+{
+    const std::uint64_t bytes = address_space() + more;
+    const rlimit limit{bytes, bytes};
+    assume(::setrlimit(RLIMIT_AS, &limit) == 0);
 }
 
 Unprivileged::Unprivileged() : was_root_(::geteuid() == 0)

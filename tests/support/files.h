@@ -41,6 +41,11 @@ class FileSizeLimit {
     void (*old_handler_)(int);
 };
 
+/// Bytes of address space that this process has taken; terabytes under a sanitizer, where it cannot be limited.
+std::uint64_t address_space();
+/// Lets this process take `more` beyond that, for good: call it in a death test.
+void limit_memory(std::uint64_t more);
+
 /// While it lives, root is nobody, so that permissions mean something where tests run as root.
 class Unprivileged {
  public:

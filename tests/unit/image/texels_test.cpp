@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
 #include <map>
 
@@ -113,6 +114,26 @@ TEST(DecodeTexels, a_flat_picture_may_be_tiny_in_its_file)
     const Texels texels = decode_texels(bytes, "flat");
     EXPECT_EQ(texels.bytes.size(), 8000000u);
     EXPECT_EQ(texels.bytes[7999998], 3);
+}
+
+TEST(DecodeTexelsDeathTest, says_when_memory_runs_out)
+{
+    if (test::address_space() > std::uint64_t{1} << 40) GTEST_SKIP() << "a sanitizer has reserved the address space";
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    const Bytes flat = samples::flat_webp(4096, 4096, {1, 2, 3, 4});  // 64 MiB of texels
+    EXPECT_EXIT(
+        {
+            test::limit_memory(std::uint64_t{40} << 20);
+            try {
+                decode_texels(flat, "flat");
+            } catch (const Error& error) {
+                std::exit(std::string_view(error.what()) == "cannot decode flat: no memory for its pixels"
+                              ? error.exit_code()
+                              : 1);
+            }
+            std::exit(0);
+        },
+        ::testing::ExitedWithCode(3), "");
 }
 
 TEST(DecodeTexels, every_cut_is_noticed)
