@@ -9,6 +9,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/files.h"
+#include "engine/image/codec.h"
 #include "engine/image/develop.h"
 #include "tests/support/files.h"
 #include "tests/support/nasty.h"
@@ -308,6 +309,23 @@ TEST(ReadImage, reads_hdr_exr_and_decodes_srgb)
     const Image jpg = read_image(folder / "a.jpg");
     EXPECT_EQ(jpg.channels, 3);
     EXPECT_NEAR(jpg.at(7, 7, 2), linear_from_srgb(252.0 / 255), 0.03);
+}
+
+TEST(ReadImage, finds_channels_by_name_in_any_order_and_spreads_grey)
+{
+    const TemporaryDirectory folder;
+    const std::vector<float> values = {1, 2, 3, 4, 5, 6, 7, 8};
+    const auto write = [&](std::vector<std::string> names) {
+        std::vector<codec::Channel> channels;
+        for (std::size_t c = 0; c < names.size(); ++c) channels.push_back({names[c], values.data() + c, names.size()});
+        replace_file(folder / "a.exr", codec::encode_exr(2, 1, channels, {}));
+        return folder / "a.exr";
+    };
+    EXPECT_THAT(read_image(write({"B", "G", "R"})).values, ElementsAre(3, 2, 1, 6, 5, 4));
+    EXPECT_THAT(read_image(write({"A", "B", "G", "R"})).values, ElementsAre(4, 3, 2, 1, 8, 7, 6, 5));
+    EXPECT_THAT(read_image(write({"Y"})).values, ElementsAre(1, 1, 1, 2, 2, 2));
+    EXPECT_THAT(message_of([&] { read_image(write({"R", "G"})); }), HasSubstr("it has no channel B"));
+    EXPECT_THAT(message_of([&] { read_film(write({"R", "G"})); }), HasSubstr("no channels R, G and B"));
 }
 
 TEST(ReplaceNonfinite, T14_mends_what_is_not_finite_and_counts_texels)
