@@ -154,7 +154,7 @@ dvec3 RadianceMap::bilinear(const dvec2& uv) const
 }
 
 // (SH-41)
-RadianceMap area_average(const Environment& environment, int max_width, int max_height)
+RadianceMap area_average(const Environment& environment, int width, int height)
 {
     RadianceMap out;
     if (!environment.map) {
@@ -163,8 +163,8 @@ RadianceMap area_average(const Environment& environment, int max_width, int max_
         return out;
     }
     const Image& map = *environment.map;
-    out.width = std::min(map.width, max_width);
-    out.height = std::min(map.height, max_height);
+    out.width = width;
+    out.height = height;
     const BoxWeights wx = box_weights(map.width, out.width);
     const BoxWeights wy = box_weights(map.height, out.height);
     for (const auto& row : wy.taps)
@@ -247,7 +247,7 @@ EnvironmentTables::EnvironmentTables(const Environment& environment, unsigned th
         for (std::size_t i = 0; i < 9; ++i)
             sh_[i] += kCosine[i == 0 ? 0 : i < 4 ? 1 : 2] * y[i] * light.solid_angle * light.radiance;
     }
-    tables_[0] = area_average(environment, 512, 256);
+    tables_[0] = area_average(environment, std::min(environment.map->width, 512), std::min(environment.map->height, 256));
     for (std::size_t i = 1; i < tables_.size(); ++i) {
         RadianceMap& table = tables_[i];
         table.width = 64;

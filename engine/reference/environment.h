@@ -37,13 +37,13 @@ class EnvironmentSampler {
     std::vector<double> columns_;  ///< running sum within each row, the last of a row is 1 (or 0 in a black row)
 };
 
-/// (SH-41) The map at most width x height, linear radiance × scale in its own frame; a constant environment is 1×1.
+/// (SH-41) The map at another size, linear radiance × scale in its own frame; a constant environment is 1×1.
 struct RadianceMap {
     int width = 0, height = 0;
     std::vector<dvec3> texels;
     dvec3 bilinear(const dvec2& uv) const;  ///< u wraps, v clamps
 };
-RadianceMap area_average(const Environment& environment, int max_width, int max_height);
+RadianceMap area_average(const Environment& environment, int width, int height);
 
 /// What rasterizers know of an environment. (SH-33), (SH-35)
 class EnvironmentTables {

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include "engine/reference/light.h"
+#include <map>
 
 namespace etalon::reference {
 namespace {
 
-constexpr double kSmallestCosine = 1e-4;  // (SH-32)
+constexpr double kSmallestCosine = 1e-4;    // (SH-32)
+constexpr std::size_t kMostEmitters = 16;  // (SH-39)
 
 }  // namespace
 
@@ -94,10 +94,58 @@ dvec2 specular_scale_bias(double roughness, double n_o)  // (SH-34) Karis, "Phys
     return {-1.04 * a + r.z, 1.04 * a + r.w};
 }
 
+std::vector<RasterEmitter> raster_emitters(const World& world)  // (SH-39)
+{
+    std::map<std::uint32_t, RasterEmitter> by_object;
+    for (const Shape& shape : world.index.shapes()) {
+        const Material& m = world.material(shape);
+        if (m.emission == dvec3(0) || m.emissive_texture.present() || m.model == BsdfModel::unlit) continue;
+        RasterEmitter& emitter = by_object[shape.object];
+        emitter.radiance = m.emission;
+        emitter.object = shape.object;
+        emitter.two_sided = m.double_sided && !m.emits_front_only;
+        if (shape.is_sphere()) {
+            emitter.area = 4 * kPi * shape.p1.x * shape.p1.x;
+            emitter.center = shape.p0 * emitter.area;
+        } else {
+            const double area = 0.5 * length(cross(shape.p1 - shape.p0, shape.p2 - shape.p0));
+            emitter.area += area;
+            emitter.area_normal += area * geometric_normal(shape, shape.p0);
+            emitter.center += area * (shape.p0 + shape.p1 + shape.p2) / 3.0;
+        }
+    }
+    std::vector<RasterEmitter> emitters;
+    for (auto& [object, emitter] : by_object) {
+        emitter.center /= emitter.area;
+        emitters.push_back(emitter);
+    }
+    const auto power = [](const RasterEmitter& e) { return dot(e.radiance, dvec3(0.2126, 0.7152, 0.0722)) * e.area; };
+    std::stable_sort(emitters.begin(), emitters.end(), [&](const auto& a, const auto& b) { return power(a) > power(b); });
+    if (emitters.size() > kMostEmitters) emitters.resize(kMostEmitters);
+    return emitters;
+}
+
+Incident incident(const RasterEmitter& emitter, const dvec3& p)  // (SH-39)
+{
+    Incident out;
+    const dvec3 to_center = emitter.center - p;
+    out.distance = length(to_center);
+    if (!(out.distance > 0)) return out;
+    out.wi = to_center / out.distance;
+    double seen = emitter.area / 4;  // a closed shape shows a quarter of its surface on average (Cauchy)
+    if (length(emitter.area_normal) > emitter.area / 2) {
+        const double facing = dot(emitter.area_normal, -out.wi);
+        seen = emitter.two_sided ? std::abs(facing) : std::max(facing, 0.0);
+    }
+    out.irradiance = emitter.radiance * (seen / std::max(out.distance * out.distance, emitter.area / kPi));
+    return out;
+}
+
 RasterShader::RasterShader(const World& world, const RenderSettings& settings)
     : world_(&world),
       camera_(world.posed->view),
       environment_(world.posed->environment, settings.threads),
+      emitters_(raster_emitters(world)),
       blinn_phong_(settings.shading == Shading::blinn_phong),
       background_(settings.background),
       background_color_(settings.background_color)
@@ -134,12 +182,14 @@ std::optional<Shaded> RasterShader::shade(const Fragment& fragment) const
     const dvec3 ng = side * ng_file;
     const double n_o = std::max(dot(n, wo), kSmallestCosine);
     const RasterMaterial m = raster_material(material, point);
-    for (const PosedLight& light : world_->posed->lights) {  // (SH-31)
-        const Incident in = incident(light, fragment.position);
-        if (!(dot(ng, in.wi) > 0)) continue;
+    const auto add = [&](const Incident& in) {  // (SH-31)
+        if (!(dot(ng, in.wi) > 0)) return;
         const dvec3 f = blinn_phong_ ? reflect_blinn_phong(m, n, wo, in.wi) : reflect_pbr(m, n, wo, in.wi, n_o);
         if (f != dvec3(0)) out.radiance += f * in.irradiance;
-    }
+    };
+    for (const PosedLight& light : world_->posed->lights) add(incident(light, fragment.position));
+    for (const RasterEmitter& emitter : emitters_)
+        if (emitter.object != fragment.object) add(incident(emitter, fragment.position));
     if (blinn_phong_) {
         out.radiance += point.occlusion * (m.diffuse + m.f0) * environment_.irradiance(n) / kPi;
         return out;

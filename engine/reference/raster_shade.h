@@ -1,8 +1,11 @@
 #pragma once
+#include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "engine/reference/camera.h"
 #include "engine/reference/environment.h"
+#include "engine/reference/light.h"
 #include "engine/reference/surface.h"
 #include "engine/scene/settings.h"
 
@@ -14,6 +17,7 @@ struct Fragment {
     Attributes attributes;      ///< with the footprint of the pixel
     dvec3 position{0};          ///< world
     dvec3 ng{0};                ///< geometric normal as the file means it; 0 for points and lines
+    std::uint32_t object = 0;   ///< draw, or draws.size() + sphere: it does not light itself (SH-39)
     bool front = true;
     bool is_lit = true;         ///< false: points and lines without normals show base colour and emission alone
 };
@@ -22,6 +26,20 @@ struct Shaded {
     dvec3 radiance{0};
     double alpha = 1;           ///< 1 unless the material blends
 };
+
+/// A whole emissive object seen as one point. (SH-39)
+struct RasterEmitter {
+    dvec3 radiance{0};
+    double area = 0;            ///< m²
+    dvec3 area_normal{0};       ///< Σ area · normal; 0 for spheres
+    dvec3 center{0};            ///< weighted by area
+    std::uint32_t object = 0;
+    bool two_sided = false;
+};
+/// The 16 of greatest power.
+std::vector<RasterEmitter> raster_emitters(const World& world);
+/// What it sends to `p`, before any cosine at p.
+Incident incident(const RasterEmitter& emitter, const dvec3& p);
 
 /// The rasterizer's light and materials: docs/shading.md §4, without shadows.
 class RasterShader {
@@ -40,6 +58,7 @@ class RasterShader {
     const World* world_;
     CameraRays camera_;
     EnvironmentTables environment_;
+    std::vector<RasterEmitter> emitters_;
     bool blinn_phong_;
     Background background_;
     dvec3 background_color_;

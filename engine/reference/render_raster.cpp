@@ -191,6 +191,7 @@ std::optional<Fragment> Band::triangle_fragment(const Piece& piece, int x, int y
     out.material = &posed_->material(draw);
     out.attributes = interpolate(primitive, frame, piece.vertices, at.b.x, at.b.y);
     out.position = p0 + at.b.x * (p1 - p0) + at.b.y * (p2 - p0);
+    out.object = piece.object;
     out.front = piece.front;
     TexturePoint& texture = out.attributes.at;
     texture.has_footprint = true;
@@ -248,6 +249,7 @@ void Band::draw_sphere(const Piece& piece, int x, int y, bool blend)
 
     Fragment fragment;
     fragment.material = &posed_->scene->materials[sphere.material];
+    fragment.object = piece.object;
     const Ray ray = camera.pinhole({x + 0.5, y + 0.5});
     double distance;
     if (const auto at = meet(*posed_, sphere, camera, ray)) {

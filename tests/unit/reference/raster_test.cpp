@@ -184,6 +184,29 @@ TEST(ReferenceRaster, SH_31_a_light_shines_on_a_plane_as_the_equation_says)
         }
 }
 
+TEST(ReferenceRaster, SH_39_a_lamp_lights_what_it_faces_but_not_itself)
+{
+    const auto floor_below = [](bool turned) {
+        return built([&](SceneBuilder& b) {
+            b.show("floor", make_rectangle({8, -8, 0}, {8, 0, 0}, {0, 8, 0}), b.lambert("half", dvec3(0.5)));
+            Material lamp;
+            lamp.model = BsdfModel::lambert;
+            lamp.base_color = dvec4(0.5, 0.5, 0.5, 1);
+            lamp.emission = dvec3(10);
+            b.show("lamp", make_rectangle({8, -8, 12}, {turned ? 1 : -1, 0, 0}, {0, 1, 0}), b.material(lamp));
+            pixel_camera(b, 16, 16);
+        });
+    };
+    const Film film = render(floor_below(false), {}, {16, 16});  // the lamp is behind the eye, 12 above the floor, and looks down
+    for (int y = 0; y < 16; ++y)
+        for (int x = 0; x < 16; ++x) {
+            const dvec3 to_lamp = dvec3(8, -8, 12) - dvec3(x + 0.5, -y - 0.5, 0);
+            const double d2 = dot(to_lamp, to_lamp), cosine = 12 / std::sqrt(d2);
+            EXPECT_NEAR(at(film, x, y).x, 0.5 / kPi * cosine * 10 * 4 * cosine / d2, 1e-6);
+        }
+    for (const vec3& pixel : render(floor_below(true), {}, {16, 16}).mean) EXPECT_EQ(pixel, vec3(0));
+}
+
 TEST(ReferenceRaster, SH_33_a_white_lambert_floor_under_a_constant_sky_has_the_skys_radiance)
 {
     const Scene scene = built([](SceneBuilder& b) {
