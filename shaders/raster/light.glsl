@@ -82,8 +82,9 @@ vec3 radiance(Surface s, vec3 position, uint object_id)
     const vec3 wo = towards_viewer(position);
     const float n_v = max(dot(s.n, wo), 1e-4);
     vec3 sum = s.emission;
-    if (kPunctualLights && kModel != kModelMirror) sum += punctual_light(s, position, wo, n_v);
-    if (kEmitters && kModel != kModelMirror) sum += emitter_light(s, position, wo, n_v, object_id);
+    const bool spread = kModel != kModelMirror || kBlinnPhong;  // a perfect mirror shows no point lights (SH-37)
+    if (kPunctualLights && spread) sum += punctual_light(s, position, wo, n_v);
+    if (kEmitters && spread) sum += emitter_light(s, position, wo, n_v, object_id);
     if (kEnvironment != kEnvironmentNone) sum += environment_light(s, wo, n_v);
     return sum;
 }
