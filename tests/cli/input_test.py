@@ -128,6 +128,19 @@ class Devices(Case):
                         env=environment(**NO_VULKAN))
         self.assert_only("x.png")
 
+    def test_without_a_vulkan_loader_that_is_said(self):
+        os.mkdir(self.path("libraries"))
+        for name in ("libvulkan.so", "libvulkan.so.1"):
+            self.write(os.path.join("libraries", name), b"")
+        run = self.run_etalon("render", "builtin:triangle", "-o", self.path("x.png"), code=3,
+                              env=environment(LD_LIBRARY_PATH=self.path("libraries")))
+        self.assertIn("loader", run.err)
+        self.assert_only("libraries")
+
+    def test_a_window_without_a_display_ends_with_3(self):
+        run = self.run_etalon("view", "builtin:triangle", code=3, env=environment(DISPLAY=None, WAYLAND_DISPLAY=None))
+        self.assertIn("display", run.err.lower())
+
     def test_a_device_that_is_not_there_ends_with_3_and_reasons(self):
         self.assertIn("nobody's card", self.run_etalon("render", "builtin:triangle", "--device", "nobody's card", "-o", self.path("x.png"), code=3).err)
         self.assert_only()

@@ -218,6 +218,15 @@ Command info_command()
     };
 }
 
+/// A window keeps adding samples while one looks at it, so it stops later than a picture does.
+Rows view_sampling_rows()
+{
+    Rows rows = sampling_rows();
+    for (Option& row : rows)
+        if (row.name == "spp") row.standard = std::to_string(kViewSamples);
+    return rows;
+}
+
 Command view_command()
 {
     return {
@@ -246,6 +255,7 @@ Command view_command()
                              view_rows(),
                              light_rows(),
                              shading_rows(),
+                             view_sampling_rows(),
                              develop_rows(),
                              device_rows(),
                              load_rows(),

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -52,6 +53,8 @@ const Option* find_option(const Command& command, std::string_view name);
 
 /// The candidate closest to `word` by edits (swaps count one), if it is close enough to be what was meant.
 std::string_view nearest(std::string_view word, std::span<const std::string> candidates);
+
+inline constexpr std::uint64_t kViewSamples = 4096;  ///< per pixel, where `view` stops when --spp is not given
 
 int render(const Arguments& arguments);
 int compare(const Arguments& arguments);

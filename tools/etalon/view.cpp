@@ -19,6 +19,7 @@ int view(const Arguments& arguments)
                         .frames = arguments.count("frames", 1, ~std::uint64_t{0}),
                         .screenshot = arguments.text("screenshot").value_or(""),
                         .stop = interrupt.flag()};
+    if (!arguments.has("spp")) options.render.spp = kViewSamples;
     if (!options.screenshot.empty()) check_output(options.screenshot.string());
     const Scene scene = open_scene(arguments.positional().front(), arguments);
     say(view_help());
