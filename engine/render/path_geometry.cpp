@@ -7,6 +7,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
+#include "engine/math/transform.h"
 #include "engine/render/path_emission.h"
 #include "shaders/shared/path.h"
 
@@ -40,12 +41,11 @@ DrawFrame frame_of(const Draw& draw, const dvec3& origin)
     const dmat3 m(draw.world_from_object);
     frame.vector_from_object = m;
     frame.mirrored = glm::determinant(m) < 0;
-    dmat3 cofactor(cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1]));
+    const dmat3 turned = cofactor(m);
     double largest = 0;
     for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) largest = std::max(largest, std::abs(cofactor[i][j]));
-    if (largest > 0) cofactor /= frame.mirrored ? -largest : largest;
-    frame.normal_from_object = cofactor;
+        for (int j = 0; j < 3; ++j) largest = std::max(largest, std::abs(turned[i][j]));
+    if (largest > 0) frame.normal_from_object = turned / (frame.mirrored ? -largest : largest);
     return frame;
 }
 
