@@ -124,6 +124,32 @@ std::vector<std::byte> webp_without_alpha(std::span<const std::byte> bytes)
     return out;
 }
 
+/// Every attribute of an EXR's header lies inside the file: OpenEXR reserves gigabytes on an attribute's word alone.
+bool exr_header_fits(std::span<const std::byte> bytes)
+{
+    constexpr unsigned kMultiPart = 0x10;  // in the second byte of version and flags
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    std::size_t i = 8;
+    for (;;) {
+        const std::size_t begin = i;
+        while (i < text.size() && text[i] != '\0') {
+            for (int k = 0; k < 2; ++k) {  // its name and its type
+                i = text.find('\0', i);
+                if (i++ == std::string_view::npos) return false;
+            }
+            if (text.size() - i < 4) return false;
+            std::uint32_t size = 0;
+            for (std::size_t k = 4; k-- > 0;) size = size << 8 | std::to_integer<std::uint32_t>(bytes[i + k]);
+            i += 4;
+            if (size > text.size() - i) return false;
+            i += size;
+        }
+        if (i++ >= text.size()) return false;
+        const bool more = (std::to_integer<unsigned>(bytes[5]) & kMultiPart) != 0;
+        if (!more || i == begin + 1) return true;  // several headers end with an empty one
+    }
+}
+
 /// What the header claims, before memory is asked for on its word.
 void check_claims(const OIIO::ImageSpec& spec, Format format, std::size_t file_bytes, const std::string& name)
 {
@@ -236,7 +262,8 @@ std::vector<std::byte> encode(Format format, const OIIO::ImageSpec& spec, const 
 Picture decode(std::span<const std::byte> bytes, std::span<const Format> accepted, const std::string& name)
 {
     const Format format = require_format(bytes, accepted, name);
-    if ((format == Format::jpeg && !jpeg_is_whole(bytes)) || (format == Format::png && !png_is_whole(bytes)))
+    if ((format == Format::jpeg && !jpeg_is_whole(bytes)) || (format == Format::png && !png_is_whole(bytes)) ||
+        (format == Format::exr && !exr_header_fits(bytes)))
         throw bad(name, "the file ends early");
     try {
         Picture picture = decode_guarded(bytes, format, name);
