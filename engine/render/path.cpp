@@ -61,11 +61,11 @@ struct PathTracer::State {
     std::vector<KernelTime> times;
 
     State(gpu::Device& d, const PosedScene& posed, const Requirements& required, const RenderSettings& settings,
-          const Progress& progress)
+          const Progress& progress, Traversal traversal)
         : device(&d),
           wants_aovs(settings.aovs),
           scene(make_path_scene(d, posed, required, settings, progress)),
-          kernels(make_path_kernels(d, scene)),
+          kernels(make_path_kernels(d, scene, traversal == Traversal::exact)),
           frame(d, {.size = sizeof(shared::PathFrame), .name = "path frame"})
     {
         scene.frame.max_depth = std::min(scene.frame.max_depth, kMostDepth);
@@ -345,8 +345,8 @@ void PathTracer::State::read_aovs(Film& film)
 }
 
 PathTracer::PathTracer(gpu::Device& device, const PosedScene& posed, const Requirements& required,
-                       const RenderSettings& settings, const Progress& progress)
-    : state_(std::make_unique<State>(device, posed, required, settings, progress))
+                       const RenderSettings& settings, const Progress& progress, Traversal traversal)
+    : state_(std::make_unique<State>(device, posed, required, settings, progress, traversal))
 {
     start(posed.view);
 }

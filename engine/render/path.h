@@ -18,6 +18,10 @@ struct KernelTime {
     double milliseconds = 0;
 };
 
+/// Which kernels find what rays meet: the ones that suit the device, or everywhere those of GPUs, one ray an invocation
+/// with a stack in memory. The picture is the same to the bit.
+enum class Traversal { by_device, exact };
+
 /// The path tracer's state on a device: docs/shading.md §3 as a wavefront (docs/architecture.md). The scene is
 /// flattened, its BVH built and everything `required` uploaded once; pictures of any view follow. `posed` (with its
 /// scene) must outlive it. The same picture to the bit whatever the number of steps, threads or the times it is read in
@@ -26,7 +30,8 @@ class PathTracer {
  public:
     /// Throws Error(machine) when the device lacks memory, Error(input) when `required` lacks a material's model.
     PathTracer(gpu::Device& device, const PosedScene& posed, const Requirements& required,
-               const RenderSettings& settings, const Progress& progress = {});
+               const RenderSettings& settings, const Progress& progress = {},
+               Traversal traversal = Traversal::by_device);
     PathTracer(PathTracer&&) noexcept;
     PathTracer& operator=(PathTracer&&) noexcept;
     ~PathTracer();

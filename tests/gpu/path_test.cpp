@@ -497,6 +497,38 @@ TEST_F(PathPicture, aovs_say_what_the_centre_of_each_pixel_sees)
     EXPECT_EQ(a.albedo[miss], vec3(0));
 }
 
+TEST_F(PathPicture, every_kind_of_traversal_gives_the_same_bits)
+{
+    // Shells within shells: rays cross hundreds of boxes, and the stack in registers is too small for some.
+    SceneBuilder b("shells");
+    Material m;
+    m.double_sided = true;
+    m.base_color = dvec4(0.8, 0.8, 0.8, 0.1);
+    m.alpha_mode = AlphaMode::blend;
+    Primitive shells = make_sphere(dvec3(0), 1, 60, 30);
+    for (int i = 1; i < 12; ++i) shells = joined(shells, make_sphere(dvec3(0.01 * i, 0, 0), 1 + 0.003 * i, 60, 30));
+    b.show("shells", shells, b.material(m));
+    b.sphere("ball", dvec3(0), 0.4, b.lambert("red", dvec3(0.8, 0.1, 0.1)));
+    b.camera("eye", 40, dvec3(0, 0.3, 4), dvec3(0));
+    b.light(Light{}, translation(dvec3(2, 3, 4)));
+    b.environment(constant_sky(0.5));
+    const Scene scene = std::move(b).finish();
+    PoseSettings pose_settings;
+    pose_settings.size = ivec2(48);
+    const PosedScene posed = pose(scene, pose_settings);
+    RenderSettings how = settings(4);
+    how.aovs = true;
+    PathTracer fitting(device(), posed, require(posed, how), how);
+    PathTracer exact(device(), posed, require(posed, how), how, {}, Traversal::exact);
+    for (PathTracer* tracer : {&fitting, &exact})
+        while (tracer->samples() < how.spp) tracer->step(how.spp);
+    const Film a = fitting.film(), e = exact.film();
+    EXPECT_TRUE(same_film(a, e));
+    EXPECT_EQ(a.aovs.object_id, e.aovs.object_id);
+    EXPECT_EQ(a.nonfinite, 0u);
+    EXPECT_GT(measure(a).mean.x, 0.05);
+}
+
 TEST_F(PathPicture, odd_pictures_and_empty_scenes_render)
 {
     SceneBuilder empty("empty");
