@@ -78,7 +78,7 @@ class Writer {
     {
         const auto* range = std::get_if<BufferRange>(&bind.what);
         if (range == nullptr || range->buffer == nullptr || declared.count != 1) throw_wrong_kind(declared);
-        assume(range->offset < range->buffer->size());
+        assume(range->offset < range->buffer->size() && range->offset % kOffsetAlignment == 0);
         const std::uint64_t size = range->size == VK_WHOLE_SIZE ? range->buffer->size() - range->offset : range->size;
         const std::uint64_t most = declared.type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
                                        ? state_.limits.uniform_buffer_range

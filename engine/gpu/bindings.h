@@ -13,7 +13,7 @@ void destroy_descriptor_pool(const DeviceState& state, VkDescriptorPool pool);
 /// A range of a buffer, for storage and uniform blocks.
 struct BufferRange {
     const Buffer* buffer = nullptr;
-    std::uint64_t offset = 0;
+    std::uint64_t offset = 0;  ///< a multiple of kOffsetAlignment
     std::uint64_t size = VK_WHOLE_SIZE;
 };
 

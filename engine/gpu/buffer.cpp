@@ -58,7 +58,7 @@ Buffer::Buffer(Device& device, const BufferSpec& spec) : size_(std::max(spec.siz
 TexelView::TexelView(Device& device, const Buffer& buffer, VkFormat format, std::uint64_t offset, std::uint64_t size)
 {
     const DeviceState& state = device.state();
-    assume(offset <= buffer.size());
+    assume(offset <= buffer.size() && offset % kOffsetAlignment == 0);
     const std::uint64_t texel = texel_size(format);
     const std::uint64_t bytes = (size == VK_WHOLE_SIZE ? buffer.size() - offset : size) / texel * texel;
     if (bytes / texel > state.limits.texel_buffer_elements)

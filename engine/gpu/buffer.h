@@ -15,6 +15,9 @@ namespace etalon::gpu {
 void destroy_buffer(const DeviceState& state, VkBuffer buffer);
 void destroy_buffer_view(const DeviceState& state, VkBufferView view);
 
+/// What offsets of views and bound ranges are multiples of, bytes: the coarsest that any device may ask for.
+inline constexpr std::uint64_t kOffsetAlignment = 256;
+
 struct BufferSpec {
     std::uint64_t size = 0;  ///< bytes; 0 makes a buffer of 16 bytes, so that an empty list can still be bound
     MemoryKind memory = MemoryKind::device;
@@ -49,7 +52,8 @@ class Buffer {
 class TexelView {
  public:
     TexelView() = default;
-    /// Views `size` bytes from `offset` (all by default). Throws Error(machine) beyond texel_buffer_elements.
+    /// Views `size` bytes from `offset`, a multiple of kOffsetAlignment (all by default). Throws Error(machine) beyond
+    /// texel_buffer_elements.
     TexelView(Device& device, const Buffer& buffer, VkFormat format, std::uint64_t offset = 0,
               std::uint64_t size = VK_WHOLE_SIZE);
     VkBufferView handle() const { return view_.get(); }

@@ -185,9 +185,9 @@ std::vector<DeviceReport> list_devices(const DeviceOptions& options)
 DeviceLimits query_limits(const Instance& instance, const Candidate& candidate)
 {
     VkPhysicalDeviceVulkan13Properties v13{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_PROPERTIES};
-    VkPhysicalDeviceSubgroupProperties subgroup{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES,
-                                                .pNext = &v13};
-    VkPhysicalDeviceProperties2 properties{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &subgroup};
+    VkPhysicalDeviceVulkan11Properties v11{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES,
+                                           .pNext = &v13};
+    VkPhysicalDeviceProperties2 properties{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &v11};
     instance.vk.vkGetPhysicalDeviceProperties2(candidate.physical, &properties);
     VkPhysicalDeviceFeatures2 features{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
     instance.vk.vkGetPhysicalDeviceFeatures2(candidate.physical, &features);
@@ -202,6 +202,7 @@ DeviceLimits query_limits(const Instance& instance, const Candidate& candidate)
     limits.uniform_buffer_range = p.maxUniformBufferRange;
     limits.texel_buffer_elements = p.maxTexelBufferElements;
     limits.buffer_size = v13.maxBufferSize;
+    limits.allocation = v11.maxMemoryAllocationSize;
     limits.image_side = std::min({p.maxImageDimension2D, p.maxFramebufferWidth, p.maxFramebufferHeight});
     limits.image_layers = p.maxImageArrayLayers;
     limits.push_constants = p.maxPushConstantsSize;
@@ -212,7 +213,7 @@ DeviceLimits query_limits(const Instance& instance, const Candidate& candidate)
     std::copy_n(p.maxComputeWorkGroupSize, 3, limits.workgroup_size);
     limits.workgroup_invocations = p.maxComputeWorkGroupInvocations;
     limits.workgroup_memory = p.maxComputeSharedMemorySize;
-    limits.subgroup_size = subgroup.subgroupSize;
+    limits.subgroup_size = v11.subgroupSize;
     limits.samples = p.framebufferColorSampleCounts & p.framebufferDepthSampleCounts;
     limits.subpixel_bits = p.subPixelPrecisionBits;
     limits.subtexel_bits = p.subTexelPrecisionBits;

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <fstream>
 
 #include "engine/base/error.h"
 #include "engine/gpu/device_state.h"
@@ -23,11 +24,21 @@ namespace {
                 "apt install mesa-vulkan-drivers");
 }
 
+/// Bytes of memory that this process can have: the machine's, or less in a container.
+std::uint64_t host_memory()
+{
+    std::uint64_t bytes =
+        static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
+    for (const char* limit : {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"}) {
+        std::uint64_t limited = 0;
+        if (std::ifstream(limit) >> limited && limited > 0) bytes = std::min(bytes, limited);  // else absent, or "max"
+    }
+    return bytes;
+}
+
 std::uint64_t default_budget(const DeviceReport& report)
 {
-    const auto physical =
-        static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
-    return (report.kind == DeviceKind::cpu ? physical : report.memory) / 4 * 3;
+    return (report.kind == DeviceKind::cpu ? host_memory() : report.memory) / 4 * 3;
 }
 
 /// Required features, and those optional ones that something in this project can use.

@@ -52,6 +52,7 @@ struct DeviceLimits {
     std::uint64_t uniform_buffer_range = 0;   ///< bytes
     std::uint64_t texel_buffer_elements = 0;  ///< texels of one texel buffer view
     std::uint64_t buffer_size = 0;            ///< bytes of one buffer
+    std::uint64_t allocation = 0;             ///< bytes of one buffer or image, whatever the memory
     std::uint32_t image_side = 0;             ///< texels of a 2D image
     std::uint32_t image_layers = 0;
     std::uint32_t push_constants = 0;  ///< bytes

@@ -163,6 +163,11 @@ Allocation MemoryPool::allocate(const VkMemoryRequirements& needs, MemoryKind ki
             break;
         }
     if (piece.arena_ == nullptr) {
+        if (needs.size > state_.limits.allocation)
+            throw Error(Blame::machine,
+                        fmt::format("\"{}\" needs {} in one piece; this device allows {}", what, in_mib(needs.size),
+                                    in_mib(state_.limits.allocation)),
+                        "render a smaller picture or scene, or choose another device");
         const std::uint64_t room = use_.budget - std::min(use_.budget, use_.held);
         if (needs.size > room)
             throw Error(Blame::machine,

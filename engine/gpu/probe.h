@@ -13,8 +13,8 @@ struct ProbeResult {
     std::string detail;       ///< "drew 2016 of 4096 pixels as expected", or what went wrong
 };
 
-/// Draws a triangle of known pixels, runs a compute kernel over it, reads both back and compares. Device errors and the
-/// time limit become `detail`; never throws Error.
+/// Draws a triangle of known pixels, runs a compute kernel over it, reads both back and compares. Device errors and
+/// `limit`, the most that is waited for the device's work, become `detail`; never throws Error.
 ProbeResult probe(Device& device, std::chrono::milliseconds limit = std::chrono::seconds(10));
 
 }  // namespace etalon::gpu

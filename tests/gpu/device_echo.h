@@ -3,6 +3,8 @@
 #ifndef ETALON_TESTS_GPU_DEVICE_ECHO_H
 #define ETALON_TESTS_GPU_DEVICE_ECHO_H
 #include "shaders/shared/material.h"
+#include "shaders/shared/path.h"
+#include "shaders/shared/raster.h"
 ETALON_SHARED_BEGIN
 
 ETALON_FUNCTION uint next_uint(ETALON_INOUT(uint) n)
@@ -105,6 +107,95 @@ ETALON_FUNCTION void fill_echo(ETALON_INOUT(LightRecord) r, uint n)
     r.direction = next_vec3(n);
     r.spot_scale = next_float(n);
     r.spot_offset = next_float(n);
+}
+
+ETALON_FUNCTION void fill_echo(ETALON_INOUT(RasterFrame) r, uint n)
+{
+    r.clip_from_world = next_mat4(n);
+    r.world_from_camera = next_mat3(n);
+    for (int i = 0; i < 9; ++i) r.irradiance[i] = next_vec3(n);
+    r.environment_radiance = next_vec3(n);
+    r.environment_turn = next_vec2(n);
+    r.environment_scale = next_float(n);
+    r.film_half = next_vec2(n);
+    r.size = next_vec2(n);
+    r.depth_range = next_vec2(n);
+    r.mirror_size = next_uvec2(n);
+    r.light_count = next_uint(n);
+    r.emitter_count = next_uint(n);
+}
+
+ETALON_FUNCTION void fill_echo(ETALON_INOUT(EmitterRecord) r, uint n)
+{
+    r.radiance = next_vec3(n);
+    r.area = next_float(n);
+    r.center = next_vec3(n);
+    r.object_id = next_uint(n);
+    r.area_vector = next_vec3(n);
+    r.flags = next_uint(n);
+}
+
+ETALON_FUNCTION void fill_echo(ETALON_INOUT(RasterDraw) r, uint n)
+{
+    for (int i = 0; i < 3; ++i) r.object_rows[i] = next_vec4(n);
+    r.normal_matrix = next_mat3(n);
+    r.handedness = next_float(n);
+    r.material = next_uint(n);
+    r.object_id = next_uint(n);
+    r.first_face = next_uint(n);
+}
+
+ETALON_FUNCTION void fill_echo(ETALON_INOUT(RasterSphere) r, uint n)
+{
+    r.center = next_vec3(n);
+    r.radius = next_float(n);
+    r.material = next_uint(n);
+    r.object_id = next_uint(n);
+}
+
+ETALON_FUNCTION void fill_echo(ETALON_INOUT(PathFrame) r, uint n)
+{
+    r.eye = next_vec3(n);
+    r.focus_distance = next_float(n);
+    r.right = next_vec3(n);
+    r.film_x = next_float(n);
+    r.up = next_vec3(n);
+    r.film_y = next_float(n);
+    r.forward = next_vec3(n);
+    r.lens_radius = next_float(n);
+    r.width = next_uint(n);
+    r.height = next_uint(n);
+    r.seed = next_uint(n);
+    r.grid_base = next_vec3(n);
+    r.max_depth = next_uint(n);
+    r.grid_scale = next_vec3(n);
+    r.roulette = next_uint(n);
+    r.bounds_min = next_vec3(n);
+    r.emitter_count = next_uint(n);
+    r.bounds_max = next_vec3(n);
+    r.light_count = next_uint(n);
+    r.sky = next_vec3(n);
+    r.strategy_count = next_uint(n);
+    r.background = next_vec3(n);
+    r.background_mode = next_uint(n);
+    r.sky_cos = next_float(n);
+    r.sky_sin = next_float(n);
+    r.sky_width = next_uint(n);
+    r.sky_height = next_uint(n);
+    r.cells_x = next_uint(n);
+    r.cells_y = next_uint(n);
+}
+
+ETALON_FUNCTION void fill_echo(ETALON_INOUT(PathPush) r, uint n)
+{
+    r.first_slot = next_uint(n);
+    r.slot_count = next_uint(n);
+    r.pixel_count = next_uint(n);
+    r.first_pixel = next_uint(n);
+    r.first_sample = next_uint(n);
+    r.sample_count = next_uint(n);
+    r.iteration = next_uint(n);
+    r.done = next_uint(n);
 }
 
 ETALON_SHARED_END

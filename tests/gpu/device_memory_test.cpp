@@ -146,6 +146,10 @@ TEST_P(DeviceMemory, refuses_sizes_that_no_device_has)
     gpu::Device device = make_device();
     EXPECT_THROW(gpu::Buffer(device, {.size = std::uint64_t{1} << 60, .name = "2^60 bytes"}), Error);
     EXPECT_THROW(gpu::Buffer(device, {.size = std::numeric_limits<std::uint64_t>::max(), .name = "2^64-1"}), Error);
+    const gpu::DeviceLimits& limits = device.limits();
+    if (limits.allocation < std::min(limits.buffer_size, device.memory_budget()) - 4096) {
+        EXPECT_THROW(gpu::Buffer(device, {.size = limits.allocation + 4096, .name = "over one allocation"}), Error);
+    }
     try {
         const gpu::Image image(
             device, {.format = VK_FORMAT_R8G8B8A8_UNORM, .width = 1'000'000, .height = 1, .name = "a long line"});

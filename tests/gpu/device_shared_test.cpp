@@ -42,7 +42,21 @@ TEST_F(DeviceShared, every_shared_struct_has_one_layout_on_host_and_device)
     const gpu::ComputePipeline kernel(device(), {.shader = {device_shaders::find("device_echo.comp")}, .name = "echo"});
     const gpu::Buffer materials = make_records<shared::MaterialRecord>(device());
     const gpu::Buffer lights = make_records<shared::LightRecord>(device());
-    const gpu::Bindings bindings(device(), kernel.layout(), {{0, materials}, {1, lights}});
+    const gpu::Buffer raster_frames = make_records<shared::RasterFrame>(device());
+    const gpu::Buffer raster_draws = make_records<shared::RasterDraw>(device());
+    const gpu::Buffer raster_spheres = make_records<shared::RasterSphere>(device());
+    const gpu::Buffer path_frames = make_records<shared::PathFrame>(device());
+    const gpu::Buffer path_pushes = make_records<shared::PathPush>(device());
+    const gpu::Buffer emitters = make_records<shared::EmitterRecord>(device());
+    const gpu::Bindings bindings(device(), kernel.layout(),
+                                 {{0, materials},
+                                  {1, lights},
+                                  {2, raster_frames},
+                                  {3, raster_draws},
+                                  {4, raster_spheres},
+                                  {5, path_frames},
+                                  {6, path_pushes},
+                                  {7, emitters}});
     gpu::run(device(), [&](gpu::Commands& commands) {
         commands.bind(kernel, bindings);
         commands.push(kElements);
@@ -50,6 +64,12 @@ TEST_F(DeviceShared, every_shared_struct_has_one_layout_on_host_and_device)
     });
     expect_same<shared::MaterialRecord>(device(), materials, "MaterialRecord");
     expect_same<shared::LightRecord>(device(), lights, "LightRecord");
+    expect_same<shared::RasterFrame>(device(), raster_frames, "RasterFrame");
+    expect_same<shared::RasterDraw>(device(), raster_draws, "RasterDraw");
+    expect_same<shared::RasterSphere>(device(), raster_spheres, "RasterSphere");
+    expect_same<shared::PathFrame>(device(), path_frames, "PathFrame");
+    expect_same<shared::PathPush>(device(), path_pushes, "PathPush");
+    expect_same<shared::EmitterRecord>(device(), emitters, "EmitterRecord");
 }
 
 struct Drawn {
