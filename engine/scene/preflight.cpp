@@ -8,7 +8,9 @@
 
 #include "engine/base/error.h"
 #include "engine/scene/extensions.h"
+#include "engine/scene/forest.h"
 #include "engine/scene/glb.h"
+#include "engine/scene/json_check.h"
 #include "engine/scene/resources.h"
 
 namespace etalon {
@@ -33,63 +35,11 @@ std::string brief(const json& value)
     return text;
 }
 
-// Counts what is in a JSON text while nothing is built from it yet.
-class Counter : public nlohmann::json_sax<json> {
- public:
-    explicit Counter(const GltfLimits& limits) : limits_(limits) {}
-
-    bool null() override { return value(); }
-    bool boolean(bool) override { return value(); }
-    bool number_integer(number_integer_t) override { return value(); }
-    bool number_unsigned(number_unsigned_t) override { return value(); }
-    bool number_float(number_float_t, const string_t&) override { return value(); }
-    bool string(string_t&) override { return value(); }
-    bool binary(binary_t&) override { return value(); }
-    bool start_object(std::size_t) override { return open(); }
-    bool start_array(std::size_t) override { return open(); }
-    bool key(string_t&) override { return true; }
-    bool end_object() override { return close(); }
-    bool end_array() override { return close(); }
-    bool parse_error(std::size_t, const std::string&, const json::exception& error) override
-    {
-        throw Error(Blame::input, fmt::format("this is not glTF: {} [INVALID_JSON]", error.what()),
-                    "a .gltf file is JSON text, a .glb file begins with the letters glTF");
-    }
-
- private:
-    bool value()
-    {
-        if (++values_ > limits_.json_values)
-            throw Error(Blame::input, fmt::format("the JSON has more than {} values", limits_.json_values),
-                        "split the file");
-        return true;
-    }
-    bool open()
-    {
-        if (++depth_ > limits_.json_depth)
-            throw Error(Blame::input, fmt::format("the JSON is nested more than {} deep", limits_.json_depth),
-                        "no glTF needs that: look into extras and extensions");
-        return value();
-    }
-    bool close()
-    {
-        --depth_;
-        return true;
-    }
-
-    const GltfLimits& limits_;
-    std::size_t depth_ = 0;
-    std::size_t values_ = 0;
-};
-
 json parse(std::string_view text, const GltfLimits& limits)
 {
     while (text.ends_with('\0')) text.remove_suffix(1);  // some writers pad the JSON chunk with zeros instead of spaces
-    if (text.size() > limits.json_bytes)
-        throw Error(Blame::input, fmt::format("{} bytes of JSON; the limit is {}", text.size(), limits.json_bytes));
     // Two passes, not one with a callback: nlohmann's callback parser takes time quadratic in the elements of an array.
-    Counter counter(limits);
-    json::sax_parse(text.begin(), text.end(), &counter);
+    check_json(text, limits);
     return json::parse(text.begin(), text.end());
 }
 
@@ -467,52 +417,22 @@ class Check {
         }
     }
 
-    // Every node has one parent at most and none is its own ancestor; scenes list nodes without parents.
     void forest() const
     {
-        const json& nodes = collection("/nodes");
-        std::vector<std::size_t> parent(nodes.size(), nodes.size());
-        for (std::size_t i = 0; i < nodes.size(); ++i) {
-            if (!nodes[i].contains("children")) continue;
-            for (const json& child : nodes[i]["children"]) {
-                std::size_t& its = parent[child.get<Unsigned>()];
-                if (its != nodes.size())
-                    throw fault(fmt::format("/nodes/{}/children", i),
-                                fmt::format("node {} already is a child of node {} [NODE_PARENT_OVERRIDE]",
-                                            child.get<Unsigned>(), its));
-                its = i;
-            }
+        std::vector<std::vector<std::size_t>> children(collection("/nodes").size());
+        std::size_t n = 0;
+        for (const json& node : collection("/nodes")) {
+            if (node.contains("children"))
+                for (const json& child : node["children"]) children[n].push_back(child.get<std::size_t>());
+            ++n;
         }
-        // With one parent each, what no root reaches is on or below a cycle.
-        std::vector<std::size_t> pending;
-        for (std::size_t i = 0; i < nodes.size(); ++i)
-            if (parent[i] == nodes.size()) pending.push_back(i);
-        std::vector<bool> reached(nodes.size());
-        while (!pending.empty()) {
-            const std::size_t i = pending.back();
-            pending.pop_back();
-            reached[i] = true;
-            if (nodes[i].contains("children"))
-                for (const json& child : nodes[i]["children"]) pending.push_back(child.get<Unsigned>());
-        }
-        if (const auto lost = std::find(reached.begin(), reached.end(), false); lost != reached.end())
-            throw fault(fmt::format("/nodes/{}", lost - reached.begin()), "this node is its own ancestor [NODE_LOOP]");
-        std::size_t s = 0;
+        std::vector<std::vector<std::size_t>> scenes;
         for (const json& scene : collection("/scenes")) {
-            std::vector<bool> listed(nodes.size());
-            const std::string pointer = fmt::format("/scenes/{}/nodes", s++);
-            if (!scene.contains("nodes")) continue;
-            for (const json& node : scene["nodes"]) {
-                const Unsigned index = node.get<Unsigned>();
-                if (parent[index] != nodes.size())
-                    throw fault(pointer,
-                                fmt::format("node {} is no root: it is a child of node {} [SCENE_NON_ROOT_NODE]", index,
-                                            parent[index]));
-                if (listed[index])
-                    throw fault(pointer, fmt::format("node {} is listed twice [ARRAY_ELEMENT_NOT_UNIQUE]", index));
-                listed[index] = true;
-            }
+            scenes.emplace_back();
+            if (scene.contains("nodes"))
+                for (const json& node : scene["nodes"]) scenes.back().push_back(node.get<std::size_t>());
         }
+        check_forest(children, scenes);
     }
 
     json document_;

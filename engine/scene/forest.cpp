@@ -1,0 +1,65 @@
+#include "engine/scene/forest.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "engine/base/error.h"
+
+namespace etalon {
+
+namespace {
+
+Error fault(std::string where, std::string what)
+{
+    Error error(Blame::input, std::move(what), "export again, or repair the file by hand");
+    error.at(std::move(where));
+    return error;
+}
+
+}  // namespace
+
+void check_forest(const std::vector<std::vector<std::size_t>>& children,
+                  const std::vector<std::vector<std::size_t>>& scenes)
+{
+    const std::size_t none = children.size();
+    std::vector<std::size_t> parent(children.size(), none);
+    for (std::size_t i = 0; i < children.size(); ++i)
+        for (const std::size_t child : children[i]) {
+            if (parent[child] != none)
+                throw fault(
+                    fmt::format("/nodes/{}/children", i),
+                    fmt::format("node {} already is a child of node {} [NODE_PARENT_OVERRIDE]", child, parent[child]));
+            parent[child] = i;
+        }
+
+    // With one parent each, what no root reaches is on or below a cycle.
+    std::vector<std::size_t> pending;
+    for (std::size_t i = 0; i < parent.size(); ++i)
+        if (parent[i] == none) pending.push_back(i);
+    std::vector<bool> reached(children.size());
+    while (!pending.empty()) {
+        const std::size_t i = pending.back();
+        pending.pop_back();
+        reached[i] = true;
+        pending.insert(pending.end(), children[i].begin(), children[i].end());
+    }
+    if (const auto lost = std::find(reached.begin(), reached.end(), false); lost != reached.end())
+        throw fault(fmt::format("/nodes/{}", lost - reached.begin()), "this node is its own ancestor [NODE_LOOP]");
+
+    std::vector<std::size_t> listed_in(children.size(), scenes.size());
+    for (std::size_t s = 0; s < scenes.size(); ++s) {
+        for (const std::size_t node : scenes[s]) {
+            if (parent[node] != none)
+                throw fault(fmt::format("/scenes/{}/nodes", s),
+                            fmt::format("node {} is no root: it is a child of node {} [SCENE_NON_ROOT_NODE]", node,
+                                        parent[node]));
+            if (listed_in[node] == s)
+                throw fault(fmt::format("/scenes/{}/nodes", s),
+                            fmt::format("node {} is listed twice [ARRAY_ELEMENT_NOT_UNIQUE]", node));
+            listed_in[node] = s;
+        }
+    }
+}
+
+}  // namespace etalon

@@ -1,0 +1,12 @@
+#pragma once
+#include <string_view>
+
+#include "engine/scene/preflight.h"
+
+namespace etalon {
+
+/// Reads JSON text through without building or recursing. Error(input) where it is no JSON, or longer, deeper or richer
+/// in values than the limits.
+void check_json(std::string_view text, const GltfLimits& limits);
+
+}  // namespace etalon
