@@ -35,8 +35,9 @@ struct Budgets {
     bool any() const { return rmse || relmse || psnr || ssim || max || mean_relative; }
 };
 
-/// The rounding to allow between a float device and double precision: a device's exp2 and log2 (sRGB decoding), division and square
-/// root are off by a few ulp each, and a path multiplies some ten of them. A hundredth of a 0.1% fault.
+/// The rounding to allow between a float device and double precision: a device's exp2 and log2 (sRGB decoding),
+/// division and square root are off by a few ulp each, and a path multiplies some ten of them. A hundredth of a 0.1%
+/// fault.
 inline constexpr double kDeviceRounding = 1e-5;
 
 struct CompareSettings {

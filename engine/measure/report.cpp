@@ -1,5 +1,7 @@
 #include "engine/measure/report.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "engine/base/error.h"
@@ -16,6 +18,22 @@ bool passed(const Report& report)
     });
     return finite && std::all_of(report.comparisons.begin(), report.comparisons.end(),
                                  [](const RunComparison& pair) { return passed(pair.comparison.verdict); });
+}
+
+std::string summary(const Report& report)
+{
+    const auto count = [&](const auto& predicate) {
+        return std::count_if(report.comparisons.begin(), report.comparisons.end(),
+                             [&](const RunComparison& pair) { return predicate(pair.comparison.verdict); });
+    };
+    const auto tested = count([](Verdict verdict) { return verdict != Verdict::not_tested; });
+    const auto failed = count([](Verdict verdict) { return !passed(verdict); });
+    if (report.comparisons.empty()) return "nothing compared";
+    const std::string outcome = failed > 0       ? fmt::format("{} {}", failed, failed == 1 ? "fails" : "fail")
+                                : passed(report) ? std::string("no fault found")
+                                                 : std::string("a picture is not finite");
+    return fmt::format("{} of {} {} tested: {}", tested, report.comparisons.size(),
+                       report.comparisons.size() == 1 ? "pair" : "pairs", outcome);
 }
 
 std::vector<std::filesystem::path> write_report(const Report& report, const std::filesystem::path& folder)

@@ -51,6 +51,9 @@ struct Report {
 /// True when no comparison failed and every film is finite: exit code 0, else 1.
 bool passed(const Report& report);
 
+/// "2 of 3 pairs tested: no fault found", or how many fail.
+std::string summary(const Report& report);
+
 /// schema "etalon-report/1": keys in a fixed order, null where a value does not exist, never NaN or Inf.
 std::string report_json(const Report& report);
 /// One page that needs no other file and no network: pictures, differences, table, p-value histograms, pixel read-out.

@@ -277,9 +277,8 @@ std::string report_html(const Report& report)
         "'unsafe-inline'; script-src 'unsafe-inline'\">\n";
     out += fmt::format("<title>{}: Etalon</title>\n<style>{}</style></head><body>\n", html_escape(report.scene),
                        page::kStyle);
-    out +=
-        fmt::format("<h1>{}: <span class=\"{}\">{}</span>{}</h1>\n", html_escape(report.scene), fine ? "good" : "bad",
-                    fine ? "no fault found" : "differences found", report.interrupted ? " (interrupted)" : "");
+    out += fmt::format("<h1>{}: <span class=\"{}\">{}</span>{}</h1>\n", html_escape(report.scene),
+                       fine ? "good" : "bad", summary(report), report.interrupted ? " (interrupted)" : "");
     if (!report.command.empty()) out += fmt::format("<p><code>{}</code></p>\n", html_escape(report.command));
     out += comparisons_table(report) + renderers_table(report);
     if (!films.empty()) {

@@ -103,7 +103,7 @@ std::string report_table(const Report& report, int width)
         if (!lines.empty())
             out += fmt::format("{} - {}:\n{}", report.runs[pair.a].name, report.runs[pair.b].name, lines);
     }
-    return out;
+    return out + "\n" + summary(report) + "\n";
 }
 
 std::string diff_table(const FileDiff& diff)

@@ -4,6 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/measure/agreement.h"
+#include "engine/measure/rasters.h"
 #include "engine/scene/knobs.h"
 #include "etalon_version.h"
 #include "tools/etalon/arguments.h"
@@ -70,7 +71,8 @@ Contender contender(const std::string& scene_name, const PosedScene& posed, cons
         run.stages.push_back({told > 0 ? "rest" : "render", std::max(0.0, stopwatch.lap() - told)});
         return run;
     };
-    return {.name = std::string(name(renderer)), .label = std::string(label(renderer)), .render = render};
+    return {
+        .kind = renderer, .name = std::string(name(renderer)), .label = std::string(label(renderer)), .render = render};
 }
 
 /// What the user typed, so that the report says how to make it again.
@@ -111,7 +113,7 @@ int compare(const Arguments& arguments)
     const std::filesystem::path folder = arguments.text("output").value_or("out/" + short_name(scene_name));
     const std::vector<Renderer> chosen = contestants(arguments);
     const RenderSettings settings = render_settings(arguments);
-    CompareSettings comparing;
+    CompareSettings comparing{.rounding = kDeviceRounding};
     comparing.false_alarm = arguments.number("false-alarm", 1e-12, 0.5).value_or(comparing.false_alarm);
     const PoseSettings view = pose_settings(arguments);
 
@@ -133,8 +135,11 @@ int compare(const Arguments& arguments)
     std::vector<Contender> contenders;
     for (const Renderer renderer : chosen)
         contenders.push_back(contender(scene_name, posed, of_contender(settings, renderer), renderers));
+    const auto judge = [&](const Film& device, const Film& reference) {
+        return judge_rasters(posed, settings, renderers.raster_precision(), device, reference);
+    };
     ProgressDisplay display(arguments);
-    report = measure_agreement(std::move(report), contenders, comparing,
+    report = measure_agreement(std::move(report), contenders, {.compare = comparing, .judge_rasters = judge},
                                display.progress(short_name(scene_name), interrupt.flag()));
     display.clear();
 

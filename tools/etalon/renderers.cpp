@@ -109,6 +109,12 @@ std::string Renderers::device_of(Renderer renderer)
     return needs_device(renderer) ? device().description() : "CPU, double precision";
 }
 
+RasterPrecision Renderers::raster_precision()
+{
+    const gpu::DeviceLimits& limits = device().limits();
+    return {.subtexel_bits = limits.subtexel_bits, .mip_bits = limits.mip_bits};
+}
+
 void Renderers::check_validation() const
 {
     if (!device_ || !device_->validating()) return;

@@ -5,6 +5,7 @@
 #include "engine/base/progress.h"
 #include "engine/gpu/device.h"
 #include "engine/image/film.h"
+#include "engine/measure/rasters.h"
 #include "engine/measure/report.h"
 #include "engine/scene/pose.h"
 #include "engine/scene/settings.h"
@@ -30,6 +31,9 @@ class Renderers {
 
     /// "CPU, double precision" for the references, else what Vulkan device it is.
     std::string device_of(Renderer renderer);
+
+    /// Of the Vulkan device.
+    RasterPrecision raster_precision();
 
     /// With --validate: throws Error(machine) quoting what the validation layers said, if anything.
     void check_validation() const;
