@@ -30,14 +30,18 @@ Aovs render_aovs(const World& world, const CameraRays& camera, bool cull_all, un
               .object_id = std::vector<std::uint32_t>(count, 0),
               .material_id = std::vector<std::uint32_t>(count, 0),
               .uv = std::vector<vec2>(count, vec2(0))};
-    parallel_for(height, [&](std::size_t y) {
-        for (std::size_t x = 0; x < width; ++x) {
-            const Ray ray = camera.pinhole({static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5});
-            // BLEND counts as a surface wherever it is not wholly clear.
-            const auto hit = world.index.closest(ray, [&](const Hit& h) { return opacity(world, ray, h, cull_all) > 0; });
-            if (hit) fill(aovs, y * width + x, camera, surface_at(world, ray, *hit));
-        }
-    }, threads);
+    parallel_for(
+        height,
+        [&](std::size_t y) {
+            for (std::size_t x = 0; x < width; ++x) {
+                const Ray ray = camera.pinhole({static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5});
+                // BLEND counts as a surface wherever it is not wholly clear.
+                const auto hit =
+                    world.index.closest(ray, [&](const Hit& h) { return opacity(world, ray, h, cull_all) > 0; });
+                if (hit) fill(aovs, y * width + x, camera, surface_at(world, ray, *hit));
+            }
+        },
+        threads);
     return aovs;
 }
 

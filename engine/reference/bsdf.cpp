@@ -6,7 +6,10 @@
 namespace etalon::reference {
 namespace {
 
-double mean(const dvec3& c) { return (c.x + c.y + c.z) / 3; }
+double mean(const dvec3& c)
+{
+    return (c.x + c.y + c.z) / 3;
+}
 
 // Half vector, nothing for directions that are opposite but for rounding (S4).
 std::optional<dvec3> half_vector(const dvec3& a, const dvec3& b)
@@ -36,11 +39,15 @@ bool Bsdf::is_delta() const
 bool Bsdf::is_black() const
 {
     switch (model) {
-        case BsdfModel::unlit: return true;
+        case BsdfModel::unlit:
+            return true;
         case BsdfModel::lambert:
-        case BsdfModel::mirror: return color == dvec3(0);
-        case BsdfModel::metallic_roughness: return false;  // F reaches 1 at grazing angles
-        default: return false;
+        case BsdfModel::mirror:
+            return color == dvec3(0);
+        case BsdfModel::metallic_roughness:
+            return false;  // F reaches 1 at grazing angles
+        default:
+            return false;
     }
 }
 
@@ -131,7 +138,8 @@ std::optional<dvec3> refract(const dvec3& wo, const dvec3& h, double ior)  // (S
 
 namespace {
 
-// (SH-14) Share of samples that go to the specular lobe: what it reflects head on against what is left for the diffuse one.
+// (SH-14) Share of samples that go to the specular lobe: what it reflects head on against what is left for the diffuse
+// one.
 double specular_share(const Bsdf& bsdf, double cos_o)
 {
     const double diffuse = mean(bsdf.color);
@@ -195,13 +203,18 @@ double pdf_rough_dielectric(const Bsdf& bsdf, const dvec3& wo, const dvec3& wi)
 dvec3 evaluate(const Bsdf& bsdf, const dvec3& wo, const dvec3& wi)
 {
     if (bsdf.is_delta() || wo.z <= 0) return dvec3(0);
-    if (bsdf.model == BsdfModel::rough_dielectric) return wi.z == 0 ? dvec3(0) : evaluate_rough_dielectric(bsdf, wo, wi);
+    if (bsdf.model == BsdfModel::rough_dielectric)
+        return wi.z == 0 ? dvec3(0) : evaluate_rough_dielectric(bsdf, wo, wi);
     if (wi.z <= 0) return dvec3(0);
     switch (bsdf.model) {
-        case BsdfModel::lambert: return bsdf.color * (wi.z / kPi);  // (SH-10), (SH-16)
-        case BsdfModel::metallic_roughness: return evaluate_metallic_roughness(bsdf, wo, wi);
-        case BsdfModel::rough_conductor: return evaluate_rough_conductor(bsdf, wo, wi);
-        default: return dvec3(0);
+        case BsdfModel::lambert:
+            return bsdf.color * (wi.z / kPi);  // (SH-10), (SH-16)
+        case BsdfModel::metallic_roughness:
+            return evaluate_metallic_roughness(bsdf, wo, wi);
+        case BsdfModel::rough_conductor:
+            return evaluate_rough_conductor(bsdf, wo, wi);
+        default:
+            return dvec3(0);
     }
 }
 
@@ -243,7 +256,8 @@ std::optional<BsdfSample> sample_rough_dielectric(const Bsdf& bsdf, const dvec3&
     const double g = ggx_g1(std::abs(wi->z), bsdf.alpha);
     const double density = pdf_rough_dielectric(bsdf, wo, *wi);
     if (!(density > 0)) return std::nullopt;
-    return BsdfSample{.wi = *wi, .weight = dvec3(reflects ? g : g / (bsdf.ior * bsdf.ior)), .pdf = density, .delta = false};
+    return BsdfSample{
+        .wi = *wi, .weight = dvec3(reflects ? g : g / (bsdf.ior * bsdf.ior)), .pdf = density, .delta = false};
 }
 
 }  // namespace
@@ -252,10 +266,14 @@ std::optional<BsdfSample> sample(const Bsdf& bsdf, const dvec3& wo, const dvec3&
 {
     if (wo.z <= 0) return std::nullopt;
     switch (bsdf.model) {
-        case BsdfModel::unlit: return std::nullopt;
-        case BsdfModel::mirror: return BsdfSample{.wi = {-wo.x, -wo.y, wo.z}, .weight = bsdf.color, .pdf = 1, .delta = true};
-        case BsdfModel::dielectric: return sample_dielectric(bsdf, wo, u.z);
-        case BsdfModel::rough_dielectric: return sample_rough_dielectric(bsdf, wo, u);
+        case BsdfModel::unlit:
+            return std::nullopt;
+        case BsdfModel::mirror:
+            return BsdfSample{.wi = {-wo.x, -wo.y, wo.z}, .weight = bsdf.color, .pdf = 1, .delta = true};
+        case BsdfModel::dielectric:
+            return sample_dielectric(bsdf, wo, u.z);
+        case BsdfModel::rough_dielectric:
+            return sample_rough_dielectric(bsdf, wo, u);
         case BsdfModel::lambert: {
             const dvec3 wi = sample_cosine(dvec2(u));
             if (wi.z <= 0) return std::nullopt;  // pdf 0 (S18)
@@ -266,9 +284,11 @@ std::optional<BsdfSample> sample(const Bsdf& bsdf, const dvec3& wo, const dvec3&
             const dvec3 wi = normalize(2 * dot(wo, h) * h - wo);
             if (wi.z <= 0) return std::nullopt;
             const dvec3 f = conductor_reflectance(dot(wo, h), bsdf.eta, bsdf.k);
-            return BsdfSample{.wi = wi, .weight = f * ggx_g1(wi.z, bsdf.alpha), .pdf = pdf(bsdf, wo, wi), .delta = false};
+            return BsdfSample{
+                .wi = wi, .weight = f * ggx_g1(wi.z, bsdf.alpha), .pdf = pdf(bsdf, wo, wi), .delta = false};
         }
-        case BsdfModel::metallic_roughness: break;
+        case BsdfModel::metallic_roughness:
+            break;
     }
     dvec3 wi;
     if (u.z < specular_share(bsdf, wo.z)) {

@@ -6,16 +6,16 @@
 
 namespace etalon::reference {
 
-/// How a point of a surface scatters. Directions are unit, in the frame whose +Z is the shading normal on the viewer's side;
-/// `wo` (to the viewer) has z > 0. docs/shading.md §2.
+/// How a point of a surface scatters. Directions are unit, in the frame whose +Z is the shading normal on the viewer's
+/// side; `wo` (to the viewer) has z > 0. docs/shading.md §2.
 struct Bsdf {
     BsdfModel model = BsdfModel::lambert;
-    dvec3 color{0};     ///< c_diff; ρ of lambert; reflectance of mirror
-    dvec3 f0{0};        ///< metallic_roughness
-    double alpha = 1;   ///< GGX
-    dvec3 eta{1};       ///< rough_conductor, per channel
-    dvec3 k{0};         ///< rough_conductor, per channel
-    double ior = 1;     ///< dielectrics: index on the far side / index on wo's side
+    dvec3 color{0};    ///< c_diff; ρ of lambert; reflectance of mirror
+    dvec3 f0{0};       ///< metallic_roughness
+    double alpha = 1;  ///< GGX
+    dvec3 eta{1};      ///< rough_conductor, per channel
+    dvec3 k{0};        ///< rough_conductor, per channel
+    double ior = 1;    ///< dielectrics: index on the far side / index on wo's side
 
     /// Reflects or transmits into single directions: `evaluate` and `pdf` are 0, samples alone carry light.
     bool is_delta() const;
@@ -31,8 +31,8 @@ double pdf(const Bsdf& bsdf, const dvec3& wo, const dvec3& wi);
 
 struct BsdfSample {
     dvec3 wi{0};
-    dvec3 weight{0};    ///< f |cosθ| / pdf, finite where pdf itself is huge (promise S16)
-    double pdf = 0;     ///< per steradian; of no meaning for delta
+    dvec3 weight{0};  ///< f |cosθ| / pdf, finite where pdf itself is huge (promise S16)
+    double pdf = 0;   ///< per steradian; of no meaning for delta
     bool delta = false;
 };
 
@@ -56,7 +56,8 @@ dvec3 fresnel_schlick(const dvec3& f0, double cosine);
 double fresnel_dielectric(double cosine, double ior);
 /// Unpolarized reflectance of η + ik against 1.
 double fresnel_conductor(double cosine, double eta, double k);
-/// `wo` refracted at normal `h` (wo·h > 0); nothing beyond the critical angle, exactly where fresnel_dielectric is 1 for it (S11).
+/// `wo` refracted at normal `h` (wo·h > 0); nothing beyond the critical angle, exactly where fresnel_dielectric is 1
+/// for it (S11).
 std::optional<dvec3> refract(const dvec3& wo, const dvec3& h, double ior);
 
 }  // namespace etalon::reference

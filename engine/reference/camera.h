@@ -6,7 +6,7 @@ namespace etalon::reference {
 
 /// World-space camera rays of a view, unit directions, t in metres from the lens (docs of View).
 class CameraRays {
-   public:
+ public:
     explicit CameraRays(const View& view);
 
     /// Through film point `film` in pixels (x right, y down from the top left corner), by the middle of the lens.
@@ -18,13 +18,13 @@ class CameraRays {
     /// Distance of `p` along the viewing axis, metres, > 0 in front.
     double depth(const dvec3& p) const { return dot(axis_, p - eye_); }
 
-   private:
+ private:
     Ray in_world(const dvec3& origin, const dvec3& direction) const;
 
     dmat4 world_from_camera_;
     dvec2 size_;
-    dvec2 slope_;        ///< perspective: x, y of the direction at the film's right and top edge, z = -1
-    dvec2 extent_;       ///< orthographic: half extents
+    dvec2 slope_;   ///< perspective: x, y of the direction at the film's right and top edge, z = -1
+    dvec2 extent_;  ///< orthographic: half extents
     bool orthographic_;
     ThinLens lens_;
     dvec3 eye_, axis_;

@@ -16,9 +16,15 @@ dvec3 turn_y(const dvec3& d, double angle)
     return {c * d.x + s * d.z, d.y, -s * d.x + c * d.z};
 }
 
-dvec3 texel(const Image& map, int x, int y) { return {map.at(x, y, 0), map.at(x, y, 1), map.at(x, y, 2)}; }
+dvec3 texel(const Image& map, int x, int y)
+{
+    return {map.at(x, y, 0), map.at(x, y, 1), map.at(x, y, 2)};
+}
 
-double mean(const dvec3& c) { return (c.x + c.y + c.z) / 3; }
+double mean(const dvec3& c)
+{
+    return (c.x + c.y + c.z) / 3;
+}
 
 // The four texels around `uv` and their weights; u wraps, v clamps.
 struct Bilinear {
@@ -62,7 +68,8 @@ dvec3 environment_radiance(const Environment& environment, const dvec3& d)
     if (!environment.map) return environment.scale * environment.radiance;
     const Image& map = *environment.map;
     const dvec2 uv = map_from_direction(turn_y(d, -environment.rotation));
-    return environment.scale * Bilinear(uv, map.width, map.height).blend([&](int x, int y) { return texel(map, x, y); });
+    return environment.scale *
+           Bilinear(uv, map.width, map.height).blend([&](int x, int y) { return texel(map, x, y); });
 }
 
 EnvironmentSampler::EnvironmentSampler(const Environment& environment) : rotation_(environment.rotation)
@@ -109,13 +116,17 @@ namespace {
 int pick(const double* sums, int count, double u, double& fraction)
 {
     const double* found = std::upper_bound(sums, sums + count, u);
-    if (found == sums + count) found = std::lower_bound(sums, sums + count, sums[count - 1]);  // u beyond a rounded last sum
+    if (found == sums + count)
+        found = std::lower_bound(sums, sums + count, sums[count - 1]);  // u beyond a rounded last sum
     const double low = found == sums ? 0.0 : found[-1];
     fraction = std::clamp((u - low) / (*found - low), 0.0, 1 - 1e-16);
     return static_cast<int>(found - sums);
 }
 
-double width_of(const double* sums, int i) { return i == 0 ? sums[0] : sums[i] - sums[i - 1]; }
+double width_of(const double* sums, int i)
+{
+    return i == 0 ? sums[0] : sums[i] - sums[i - 1];
+}
 
 }  // namespace
 
@@ -130,7 +141,8 @@ EnvironmentSampler::Sample EnvironmentSampler::sample(const dvec2& u) const
 {
     double fx = 0, fy = 0;
     const int row = pick(rows_.data(), height_, u.y, fy);
-    const int column = pick(columns_.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(width_), width_, u.x, fx);
+    const int column =
+        pick(columns_.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(width_), width_, u.x, fx);
     const dvec2 uv((column + fx) / width_, (row + fy) / height_);
     const dvec3 d = turn_y(direction_from_map(uv), rotation_);
     return {d, pdf_of_texel(row, column, std::sin(kPi * uv.y))};
@@ -206,7 +218,8 @@ std::vector<Source> sources_of(const RadianceMap& map)
             const double solid_angle =
                 2 * kPi / map.width * (std::cos(kPi * y / map.height) - std::cos(kPi * (y + 1) / map.height));
             sources.push_back({direction_from_map({(x + 0.5) / map.width, (y + 0.5) / map.height}),
-                               map.texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width) + static_cast<std::size_t>(x)],
+                               map.texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width) +
+                                          static_cast<std::size_t>(x)],
                                solid_angle});
         }
     return sources;
@@ -247,19 +260,23 @@ EnvironmentTables::EnvironmentTables(const Environment& environment, unsigned th
         for (std::size_t i = 0; i < 9; ++i)
             sh_[i] += kCosine[i == 0 ? 0 : i < 4 ? 1 : 2] * y[i] * light.solid_angle * light.radiance;
     }
-    tables_[0] = area_average(environment, std::min(environment.map->width, 512), std::min(environment.map->height, 256));
+    tables_[0] =
+        area_average(environment, std::min(environment.map->width, 512), std::min(environment.map->height, 256));
     for (std::size_t i = 1; i < tables_.size(); ++i) {
         RadianceMap& table = tables_[i];
         table.width = 64;
         table.height = 32;
         table.texels.resize(64 * 32);
         const double roughness = 0.2 * static_cast<double>(i);
-        parallel_for(32, [&](std::size_t y) {
-            for (std::size_t x = 0; x < 64; ++x) {
-                const dvec2 uv((static_cast<double>(x) + 0.5) / 64, (static_cast<double>(y) + 0.5) / 32);
-                table.texels[y * 64 + x] = prefilter(sources, direction_from_map(uv), roughness * roughness);
-            }
-        }, threads);
+        parallel_for(
+            32,
+            [&](std::size_t y) {
+                for (std::size_t x = 0; x < 64; ++x) {
+                    const dvec2 uv((static_cast<double>(x) + 0.5) / 64, (static_cast<double>(y) + 0.5) / 32);
+                    table.texels[y * 64 + x] = prefilter(sources, direction_from_map(uv), roughness * roughness);
+                }
+            },
+            threads);
     }
 }
 

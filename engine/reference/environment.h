@@ -14,10 +14,10 @@ dvec3 environment_radiance(const Environment& environment, const dvec3& d);
 dvec2 map_from_direction(const dvec3& d);
 dvec3 direction_from_map(const dvec2& uv);
 
-/// Draws directions of a map about in proportion to its radiance. A constant environment is not sampled: its rays are found
-/// by the BSDF alone, without noise.
+/// Draws directions of a map about in proportion to its radiance. A constant environment is not sampled: its rays are
+/// found by the BSDF alone, without noise.
 class EnvironmentSampler {
-   public:
+ public:
     explicit EnvironmentSampler(const Environment& environment);
 
     bool empty() const { return rows_.empty(); }
@@ -28,7 +28,7 @@ class EnvironmentSampler {
     Sample sample(const dvec2& u) const;
     double pdf(const dvec3& direction) const;  ///< per steradian; 0 where it never samples
 
-   private:
+ private:
     double pdf_of_texel(int row, int column, double sin_theta) const;
 
     double rotation_ = 0;
@@ -47,17 +47,17 @@ RadianceMap area_average(const Environment& environment, int width, int height);
 
 /// What rasterizers know of an environment. (SH-33), (SH-35)
 class EnvironmentTables {
-   public:
+ public:
     EnvironmentTables(const Environment& environment, unsigned threads);
-    dvec3 irradiance(const dvec3& n) const;                       ///< E(n), at least 0
-    dvec3 prefiltered(const dvec3& r, double roughness) const;    ///< P(r, roughness)
+    dvec3 irradiance(const dvec3& n) const;                     ///< E(n), at least 0
+    dvec3 prefiltered(const dvec3& r, double roughness) const;  ///< P(r, roughness)
 
-   private:
+ private:
     bool constant_ = false;
     dvec3 radiance_{0};
     double rotation_ = 0;
-    std::array<dvec3, 9> sh_{};           ///< of radiance, times the cosine kernel
-    std::array<RadianceMap, 6> tables_;   ///< roughness 0, 0.2 … 1
+    std::array<dvec3, 9> sh_{};          ///< of radiance, times the cosine kernel
+    std::array<RadianceMap, 6> tables_;  ///< roughness 0, 0.2 … 1
 };
 
 /// A_l of Ramamoorthi & Hanrahan 2001: π, 2π/3, π/4; and the nine real spherical harmonics at `n`.

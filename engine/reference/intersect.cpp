@@ -8,7 +8,10 @@ namespace {
 
 constexpr double kUnit = std::numeric_limits<double>::epsilon() / 2;  // 2^-53
 
-constexpr double gamma(int n) { return n * kUnit / (1 - n * kUnit); }
+constexpr double gamma(int n)
+{
+    return n * kUnit / (1 - n * kUnit);
+}
 
 // a b - c d with the right sign always: Kahan's difference of products (Jeannerod, Louvet & Muller 2013).
 double difference_of_products(double a, double b, double c, double d)

@@ -17,8 +17,8 @@ struct Ray {
 /// A ray as the watertight test needs it: the axis it mostly follows, and the shear that turns it onto +Z.
 struct ShearedRay {
     explicit ShearedRay(const Ray& ray);
-    int kx, ky, kz;         ///< axes, kz the largest of |direction|; kx and ky keep the winding
-    double sx, sy, sz;      ///< shear
+    int kx, ky, kz;     ///< axes, kz the largest of |direction|; kx and ky keep the winding
+    double sx, sy, sz;  ///< shear
     dvec3 origin;
 };
 
@@ -43,8 +43,8 @@ struct SphereHits {
 /// (RT-4) in the form that does not cancel far away or on huge spheres (promises G14, G15). Only 0 < t.
 SphereHits intersect_sphere(const Ray& ray, const dvec3& center, double radius);
 
-/// (RT-6) The point from which a ray along `direction` leaves a surface: `p` moved along the geometric normal, to the side
-/// that `direction` points to, until it is outside the box p ± error (PBRT 4th ed., §6.8; promise G23).
+/// (RT-6) The point from which a ray along `direction` leaves a surface: `p` moved along the geometric normal, to the
+/// side that `direction` points to, until it is outside the box p ± error (PBRT 4th ed., §6.8; promise G23).
 dvec3 offset_origin(const dvec3& p, const dvec3& error, const dvec3& normal, const dvec3& direction);
 
 }  // namespace etalon::reference

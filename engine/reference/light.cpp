@@ -6,7 +6,10 @@
 namespace etalon::reference {
 namespace {
 
-double mean(const dvec3& c) { return (c.x + c.y + c.z) / 3; }
+double mean(const dvec3& c)
+{
+    return (c.x + c.y + c.z) / 3;
+}
 
 double area(const Shape& s)
 {
@@ -31,7 +34,8 @@ double cone_height(double r, double d)
     return sine2 / (1 + std::sqrt(std::max(0.0, 1 - sine2)));
 }
 
-// Radiance that leaves `hit` against the ray, with what of it an observer gets where the emitter itself lets light through.
+// Radiance that leaves `hit` against the ray, with what of it an observer gets where the emitter itself lets light
+// through.
 dvec3 emitted(const World& world, const Ray& ray, const Hit& hit)
 {
     const double opaque = opacity(world, ray, hit);
@@ -91,7 +95,8 @@ Incident incident(const PosedLight& posed, const dvec3& p)  // (SH-22)
         const double x = out.distance / light.range;
         attenuation *= std::max(std::min(1 - x * x * x * x, 1.0), 0.0);
     }
-    out.irradiance = light.color * (light.intensity * attenuation / out.distance / out.distance);  // no d²: it overflows (S5)
+    out.irradiance =
+        light.color * (light.intensity * attenuation / out.distance / out.distance);  // no d²: it overflows (S5)
     return out;
 }
 

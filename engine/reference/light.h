@@ -11,24 +11,24 @@ double power_heuristic(double p, double q);
 
 /// What a punctual light sends to a point. (SH-22)
 struct Incident {
-    dvec3 wi{0};             ///< unit, towards the light
-    double distance = 0;     ///< metres; infinite for directional lights
-    dvec3 irradiance{0};     ///< on a surface facing it: I · attenuation / d², or E
+    dvec3 wi{0};          ///< unit, towards the light
+    double distance = 0;  ///< metres; infinite for directional lights
+    dvec3 irradiance{0};  ///< on a surface facing it: I · attenuation / d², or E
 };
 Incident incident(const PosedLight& light, const dvec3& p);
 
 /// A point drawn on an emissive surface, as seen from p.
 struct AreaSample {
-    dvec3 point{0};          ///< world
-    dvec3 wi{0};             ///< unit, towards it
-    dvec3 radiance{0};       ///< towards p, times the opacity of a masked or blended emitter
-    double pdf = 0;          ///< per steradian at p, > 0
-    std::uint32_t shape = 0; ///< of SceneIndex::shapes()
+    dvec3 point{0};           ///< world
+    dvec3 wi{0};              ///< unit, towards it
+    dvec3 radiance{0};        ///< towards p, times the opacity of a masked or blended emitter
+    double pdf = 0;           ///< per steradian at p, > 0
+    std::uint32_t shape = 0;  ///< of SceneIndex::shapes()
 };
 
 /// The emissive triangles and spheres of a scene, drawn in proportion to an estimate of their power. (SH-21)
 class AreaLights {
-   public:
+ public:
     explicit AreaLights(const World& world);
 
     bool empty() const { return sums_.empty(); }
@@ -37,7 +37,7 @@ class AreaLights {
     /// Density per steradian with which `sample` from p draws the point that `ray` (from p, unit direction) met.
     double pdf(const dvec3& p, const Ray& ray, const Hit& hit) const;
 
-   private:
+ private:
     std::optional<AreaSample> sample_triangle(std::uint32_t shape, const dvec3& p, const dvec2& u) const;
     std::optional<AreaSample> sample_sphere(std::uint32_t shape, const dvec3& p, const dvec2& u) const;
 

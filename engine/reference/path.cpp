@@ -15,8 +15,14 @@ constexpr std::uint32_t kDirection = 0, kLobeAndRoulette = 1, kAreaPoint = 2, kP
 constexpr std::uint32_t kPassing = 0x80000000u;
 constexpr int kFirstRoulette = 3;  // vertices that always go on: short paths carry most of the light
 
-double max_channel(const dvec3& c) { return std::max({c.x, c.y, c.z}); }
-double mean(const dvec3& c) { return (c.x + c.y + c.z) / 3; }
+double max_channel(const dvec3& c)
+{
+    return std::max({c.x, c.y, c.z});
+}
+double mean(const dvec3& c)
+{
+    return (c.x + c.y + c.z) / 3;
+}
 
 double unit_double(std::uint32_t high, std::uint32_t low)
 {
@@ -48,7 +54,10 @@ struct ShadingFrame {
 };
 
 // Light from wi that the shading normal would let in must come from the same side of the surface itself.
-bool sides_agree(const Surface& s, const dvec3& wi) { return (dot(s.n, wi) > 0) == (dot(s.ng, wi) > 0); }
+bool sides_agree(const Surface& s, const dvec3& wi)
+{
+    return (dot(s.n, wi) > 0) == (dot(s.ng, wi) > 0);
+}
 
 struct Response {
     dvec3 value{0};  // f |cosθ|
@@ -75,7 +84,10 @@ dvec2 PathRandom::pair(std::uint32_t dimension) const
     return {unit_double(bits.x, bits.y), unit_double(bits.z, bits.w)};
 }
 
-dvec2 PathRandom::in_pixel() const { return pair(kFilm); }
+dvec2 PathRandom::in_pixel() const
+{
+    return pair(kFilm);
+}
 
 double PathRandom::of_shape(std::uint32_t segment, const Shape& shape, bool leaving) const
 {
@@ -115,8 +127,8 @@ PathResult PathTracer::trace(const dvec2& film, const PathRandom& random) const
     if (max_depth_ < 1) return result;
     Ray ray = camera_.has_lens() ? camera_.through_lens(film, sample_disk(random.pair(kLens))) : camera_.pinhole(film);
     dvec3 throughput(1);
-    double spread = 1;         // (η_t/η_i)² so far: what refraction took from the radiance, not from the chance to matter
-    bool by_delta = true;      // no light sampling competes with the ray that is traced
+    double spread = 1;  // (η_t/η_i)² so far: what refraction took from the radiance, not from the chance to matter
+    bool by_delta = true;  // no light sampling competes with the ray that is traced
     double ray_pdf = 0;
     dvec3 from(0);
     for (int depth = 1;; ++depth) {
@@ -124,18 +136,21 @@ PathResult PathTracer::trace(const dvec2& film, const PathRandom& random) const
             const double opaque = opacity(*world_, ray, h);
             if (opaque == 0 || opaque == 1) return opaque == 1;
             const Shape& shape = world_->index.shapes()[h.shape];
-            const bool leaving = shape.is_sphere() && dot(ray.origin + h.t * ray.direction - shape.p0, ray.direction) > 0;
+            const bool leaving =
+                shape.is_sphere() && dot(ray.origin + h.t * ray.direction - shape.p0, ray.direction) > 0;
             return random.of_shape(static_cast<std::uint32_t>(depth), shape, leaving) < opaque;
         });
         const bool alone = by_delta || !choices_.sample_lights;
         if (!hit) {
-            leave(ray, depth, throughput, alone ? 1 : power_heuristic(ray_pdf, environment_.pdf(ray.direction)), result);
+            leave(ray, depth, throughput, alone ? 1 : power_heuristic(ray_pdf, environment_.pdf(ray.direction)),
+                  result);
             return result;
         }
         if (depth == 1) result.alpha = 1;
         const Surface surface = surface_at(*world_, ray, *hit);
         if (surface.emission != dvec3(0))
-            result.radiance += throughput * surface.emission * (alone ? 1 : power_heuristic(ray_pdf, area_.pdf(from, ray, *hit)));
+            result.radiance +=
+                throughput * surface.emission * (alone ? 1 : power_heuristic(ray_pdf, area_.pdf(from, ray, *hit)));
         if (surface.is_black) return result;
         if (depth == max_depth_) {
             result.truncated = true;
@@ -144,12 +159,15 @@ PathResult PathTracer::trace(const dvec2& film, const PathRandom& random) const
 
         const std::uint32_t dimension = kFirstVertex + kPerVertex * static_cast<std::uint32_t>(depth - 1);
         const dvec3 wo = -ray.direction;
-        if (choices_.sample_lights) result.radiance += throughput * direct(surface, wo, random, dimension);
-        else result.radiance += throughput * from_punctual(surface, wo, random.pair(dimension + kPicks).y);
+        if (choices_.sample_lights)
+            result.radiance += throughput * direct(surface, wo, random, dimension);
+        else
+            result.radiance += throughput * from_punctual(surface, wo, random.pair(dimension + kPicks).y);
 
         const ShadingFrame frame(surface.n);
         const dvec2 lobe = random.pair(dimension + kLobeAndRoulette);
-        const auto scattered = sample(surface.bsdf, frame.local(wo), dvec3(random.pair(dimension + kDirection), lobe.x));
+        const auto scattered =
+            sample(surface.bsdf, frame.local(wo), dvec3(random.pair(dimension + kDirection), lobe.x));
         if (!scattered) return result;
         const dvec3 wi = frame.world(scattered->wi);
         if (!sides_agree(surface, wi)) return result;
@@ -171,9 +189,8 @@ PathResult PathTracer::trace(const dvec2& film, const PathRandom& random) const
 // Part of the light along a ray that arrives; `light` does not shadow itself.
 double PathTracer::visibility(const Ray& ray, std::uint32_t light) const
 {
-    return world_->index.transmittance(ray, [&](const Hit& hit) {
-        return hit.shape == light ? 1.0 : 1 - opacity(*world_, ray, hit);
-    });
+    return world_->index.transmittance(
+        ray, [&](const Hit& hit) { return hit.shape == light ? 1.0 : 1 - opacity(*world_, ray, hit); });
 }
 
 double PathTracer::visibility(const Surface& surface, const dvec3& target, std::uint32_t light) const
@@ -185,7 +202,8 @@ double PathTracer::visibility(const Surface& surface, const dvec3& target, std::
 constexpr std::uint32_t kNoShape = 0xffffffffu;
 
 // Next-event estimation: one point of an emitter, one punctual light, one direction of the environment.
-dvec3 PathTracer::direct(const Surface& surface, const dvec3& wo, const PathRandom& random, std::uint32_t dimension) const
+dvec3 PathTracer::direct(const Surface& surface, const dvec3& wo, const PathRandom& random,
+                         std::uint32_t dimension) const
 {
     if (surface.bsdf.is_delta()) return dvec3(0);
     dvec3 sum(0);
@@ -195,9 +213,11 @@ dvec3 PathTracer::direct(const Surface& surface, const dvec3& wo, const PathRand
     return sum;
 }
 
-dvec3 PathTracer::from_area(const Surface& surface, const dvec3& wo, const PathRandom& random, std::uint32_t dimension) const
+dvec3 PathTracer::from_area(const Surface& surface, const dvec3& wo, const PathRandom& random,
+                            std::uint32_t dimension) const
 {
-    const auto light = area_.sample(surface.position, random.pair(dimension + kPicks).x, random.pair(dimension + kAreaPoint));
+    const auto light =
+        area_.sample(surface.position, random.pair(dimension + kPicks).x, random.pair(dimension + kAreaPoint));
     if (!light) return dvec3(0);
     const Response response = respond(surface, wo, light->wi);
     if (response.value == dvec3(0)) return dvec3(0);
@@ -214,7 +234,8 @@ dvec3 PathTracer::from_punctual(const Surface& surface, const dvec3& wo, double 
         return respond(surface, wo, in.wi).value * in.irradiance;
     };
     double total = 0;
-    for (const PosedLight& light : posed_->lights) total += mean(contribution(light, incident(light, surface.position)));
+    for (const PosedLight& light : posed_->lights)
+        total += mean(contribution(light, incident(light, surface.position)));
     if (!(total > 0)) return dvec3(0);
     double sum = 0;
     for (const PosedLight& light : posed_->lights) {
@@ -226,7 +247,8 @@ dvec3 PathTracer::from_punctual(const Surface& surface, const dvec3& wo, double 
         const double visible =
             std::isfinite(in.distance)
                 ? visibility(surface, light.position, kNoShape)
-                : visibility(Ray{.origin = offset_origin(surface.position, surface.error, surface.ng, in.wi), .direction = in.wi},
+                : visibility(Ray{.origin = offset_origin(surface.position, surface.error, surface.ng, in.wi),
+                                 .direction = in.wi},
                              kNoShape);
         return visible * total / share * bring;
     }

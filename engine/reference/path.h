@@ -10,15 +10,16 @@ namespace etalon::reference {
 
 /// Uniform numbers of one path: a pure function of pixel, sample and dimension, multiples of 2⁻⁵³ below 1.
 class PathRandom {
-   public:
+ public:
     PathRandom(std::uint32_t pixel, std::uint32_t sample, std::uint64_t seed);
     dvec2 pair(std::uint32_t dimension) const;
     /// Where in its pixel the path starts (SH-24).
     dvec2 in_pixel() const;
-    /// For the chance that a shape lets segment `segment` pass: another number for every shape, and for a sphere's far side.
+    /// For the chance that a shape lets segment `segment` pass: another number for every shape, and for a sphere's far
+    /// side.
     double of_shape(std::uint32_t segment, const Shape& shape, bool leaving) const;
 
-   private:
+ private:
     std::uint32_t pixel_, sample_, seed_;
 };
 
@@ -31,19 +32,20 @@ struct PathResult {
 
 /// Which of its two ways a path takes to find light; every choice has the same mean.
 struct PathChoices {
-    bool sample_lights = true;  ///< next-event estimation, weighted against BSDF sampling (MC-3); false: BSDF sampling alone
+    bool sample_lights =
+        true;  ///< next-event estimation, weighted against BSDF sampling (MC-3); false: BSDF sampling alone
 };
 
 /// The light transport of docs/shading.md §3 for one scene.
 class PathTracer {
-   public:
+ public:
     PathTracer(const PosedScene& posed, const World& world, const RenderSettings& settings, PathChoices choices = {});
 
     /// (SH-20) One path through film point `film` (pixels).
     PathResult trace(const dvec2& film, const PathRandom& random) const;
     const CameraRays& camera() const { return camera_; }
 
-   private:
+ private:
     dvec3 direct(const Surface& surface, const dvec3& wo, const PathRandom& random, std::uint32_t dimension) const;
     double visibility(const Surface& surface, const dvec3& target, std::uint32_t light) const;
     double visibility(const Ray& ray, std::uint32_t light) const;

@@ -8,7 +8,7 @@ namespace etalon::reference {
 
 /// Mean and scatter of the samples of one pixel, one after another (Welford 1962; MC-2, promises M1–M3).
 class PixelSum {
-   public:
+ public:
     /// A sample that is not finite is counted and left out (promise M13).
     void add(const dvec3& radiance, double alpha);
 
@@ -18,7 +18,7 @@ class PixelSum {
     double alpha() const { return alpha_; }
     dvec3 variance_of_mean() const;  ///< nit²; 0 under two samples
 
-   private:
+ private:
     dvec3 mean_{0}, m2_{0};
     double alpha_ = 0;
     std::uint64_t count_ = 0;

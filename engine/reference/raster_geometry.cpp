@@ -9,7 +9,10 @@ namespace {
 // Half a guard band in pixels: coordinates stay below 2^20 pixels, edge functions below 2^59.
 constexpr double kGuard = 1 << 20;
 
-dvec4 mix(const dvec4& a, const dvec4& b, double t) { return a + t * (b - a); }
+dvec4 mix(const dvec4& a, const dvec4& b, double t)
+{
+    return a + t * (b - a);
+}
 
 // Sutherland & Hodgman 1974 against one plane; `distance` ≥ 0 is inside.
 template <class Distance>
@@ -58,7 +61,9 @@ void bound(Piece& piece, const View& view)
         low = glm::min(low, v.pixel);
         high = glm::max(high, v.pixel);
     }
-    const auto limit = [](double x, int size) { return static_cast<int>(std::clamp(x, 0.0, static_cast<double>(size))); };
+    const auto limit = [](double x, int size) {
+        return static_cast<int>(std::clamp(x, 0.0, static_cast<double>(size)));
+    };
     piece.x0 = limit(std::floor(low.x - 0.01), view.width);
     piece.y0 = limit(std::floor(low.y - 0.01), view.height);
     piece.x1 = limit(std::ceil(high.x + 0.01), view.width);
@@ -82,8 +87,8 @@ void keep(std::vector<Piece>& pieces, Piece piece, Sides sides, bool mirrored, c
 }
 
 // (SH-7) A quadrilateral on the film between two ends, `across` half its width at right angles, as two triangles.
-void keep_strip(std::vector<Piece>& pieces, const ScreenVertex& a, const ScreenVertex& b, const dvec2& across, Piece piece,
-                const View& view)
+void keep_strip(std::vector<Piece>& pieces, const ScreenVertex& a, const ScreenVertex& b, const dvec2& across,
+                Piece piece, const View& view)
 {
     const auto moved = [&](ScreenVertex v, double side) {
         v.pixel += side * across;

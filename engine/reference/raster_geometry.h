@@ -9,7 +9,8 @@
 
 namespace etalon::reference {
 
-/// Sub-pixel positions are multiples of 2⁻⁸ pixel, as Vulkan devices snap them (subPixelPrecisionBits = 8; promises G1–G3).
+/// Sub-pixel positions are multiples of 2⁻⁸ pixel, as Vulkan devices snap them (subPixelPrecisionBits = 8; promises
+/// G1–G3).
 inline constexpr std::int64_t kSubPixels = 256;
 
 /// (TR-1) Twice the signed area of (p, a, b), pixel² / 2¹⁶, y down: > 0 where a → b has p on its right.
@@ -41,26 +42,26 @@ struct ClipVertex {
     dvec2 b{0};
 };
 
-/// The part of a convex polygon in front of the near plane and inside a guard band of `guard` times the view, in homogeneous
-/// coordinates, so that nothing is divided by w ≤ 0 (promise G6). Empty where nothing is left.
+/// The part of a convex polygon in front of the near plane and inside a guard band of `guard` times the view, in
+/// homogeneous coordinates, so that nothing is divided by w ≤ 0 (promise G6). Empty where nothing is left.
 std::vector<ClipVertex> clip(std::span<const ClipVertex> polygon, const dvec2& guard);
 
 /// A vertex on the film.
 struct ScreenVertex {
-    dvec2 pixel{0};       ///< (TF-6), before snapping: attributes are interpolated between the true positions
-    FixedPoint snapped;   ///< what coverage is decided by
-    double depth = 0;     ///< z / w
+    dvec2 pixel{0};      ///< (TF-6), before snapping: attributes are interpolated between the true positions
+    FixedPoint snapped;  ///< what coverage is decided by
+    double depth = 0;    ///< z / w
     double inverse_w = 1;
     dvec2 b{0};
 };
 
 /// Something to be drawn: a triangle on the film (also a piece of a line, or a point), or a whole sphere.
 struct Piece {
-    std::array<ScreenVertex, 3> v;              ///< clockwise with y down; unused for spheres
-    std::array<std::uint32_t, 3> vertices{};    ///< of the primitive: what `b` interpolates between
-    std::uint32_t object = 0;                   ///< draw, or draws.size() + sphere
+    std::array<ScreenVertex, 3> v;            ///< clockwise with y down; unused for spheres
+    std::array<std::uint32_t, 3> vertices{};  ///< of the primitive: what `b` interpolates between
+    std::uint32_t object = 0;                 ///< draw, or draws.size() + sphere
     bool front = true;
-    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;         ///< pixels that it may touch: x0 ≤ x < x1, y0 ≤ y < y1
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  ///< pixels that it may touch: x0 ≤ x < x1, y0 ≤ y < y1
 };
 
 /// Pieces of draw `object`, clipped and culled, in the order of its elements. (SH-32)

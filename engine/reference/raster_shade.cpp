@@ -7,7 +7,7 @@
 namespace etalon::reference {
 namespace {
 
-constexpr double kSmallestCosine = 1e-4;    // (SH-32)
+constexpr double kSmallestCosine = 1e-4;   // (SH-32)
 constexpr std::size_t kMostEmitters = 16;  // (SH-39)
 
 }  // namespace
@@ -17,7 +17,8 @@ RasterMaterial raster_material(const Material& material, const MaterialPoint& po
     const auto squared_alpha = [](double roughness) { return std::max(roughness * roughness, 1e-3); };
     RasterMaterial m;
     switch (material.model) {
-        case BsdfModel::unlit: break;
+        case BsdfModel::unlit:
+            break;
         case BsdfModel::lambert:
             m.diffuse = point.color;
             m.has_specular = false;
@@ -64,7 +65,10 @@ dvec3 reflect_pbr(const RasterMaterial& m, const dvec3& n, const dvec3& wo, cons
     return ((dvec3(1) - f) * m.diffuse / kPi + f * (d * ggx_v(n_o, n_i, m.alpha))) * n_i;  // (SH-14)
 }
 
-double blinn_phong_exponent(double alpha) { return std::clamp(2 / (alpha * alpha) - 2, 0.0, 1e6); }
+double blinn_phong_exponent(double alpha)
+{
+    return std::clamp(2 / (alpha * alpha) - 2, 0.0, 1e6);
+}
 
 // n·h = 1 − d²/2, whose logarithm is exact near 1 where n·h itself has no digits left (S1).
 double blinn_phong_lobe(double exponent, double distance)
@@ -120,7 +124,8 @@ std::vector<RasterEmitter> raster_emitters(const World& world)  // (SH-39)
         emitters.push_back(emitter);
     }
     const auto power = [](const RasterEmitter& e) { return dot(e.radiance, dvec3(0.2126, 0.7152, 0.0722)) * e.area; };
-    std::stable_sort(emitters.begin(), emitters.end(), [&](const auto& a, const auto& b) { return power(a) > power(b); });
+    std::stable_sort(emitters.begin(), emitters.end(),
+                     [&](const auto& a, const auto& b) { return power(a) > power(b); });
     if (emitters.size() > kMostEmitters) emitters.resize(kMostEmitters);
     return emitters;
 }
@@ -194,7 +199,8 @@ std::optional<Shaded> RasterShader::shade(const Fragment& fragment) const
         out.radiance += point.occlusion * (m.diffuse + m.f0) * environment_.irradiance(n) / kPi;
         return out;
     }
-    if (m.diffuse != dvec3(0)) out.radiance += point.occlusion * m.diffuse / kPi * environment_.irradiance(n);  // (SH-33)
+    if (m.diffuse != dvec3(0))
+        out.radiance += point.occlusion * m.diffuse / kPi * environment_.irradiance(n);  // (SH-33)
     if (!m.has_specular) return out;
     const dvec3 r = 2 * dot(wo, n) * n - wo;
     const dvec2 ab = specular_scale_bias(m.roughness, n_o);

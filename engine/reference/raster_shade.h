@@ -14,25 +14,25 @@ namespace etalon::reference {
 /// What is shaded: one surface at one pixel's centre. (SH-30)
 struct Fragment {
     const Material* material = nullptr;
-    Attributes attributes;      ///< with the footprint of the pixel
-    dvec3 position{0};          ///< world
-    dvec3 ng{0};                ///< geometric normal as the file means it; 0 for points and lines
-    std::uint32_t object = 0;   ///< draw, or draws.size() + sphere: it does not light itself (SH-39)
+    Attributes attributes;     ///< with the footprint of the pixel
+    dvec3 position{0};         ///< world
+    dvec3 ng{0};               ///< geometric normal as the file means it; 0 for points and lines
+    std::uint32_t object = 0;  ///< draw, or draws.size() + sphere: it does not light itself (SH-39)
     bool front = true;
-    bool is_lit = true;         ///< false: points and lines without normals show base colour and emission alone
+    bool is_lit = true;  ///< false: points and lines without normals show base colour and emission alone
 };
 
 struct Shaded {
     dvec3 radiance{0};
-    double alpha = 1;           ///< 1 unless the material blends
+    double alpha = 1;  ///< 1 unless the material blends
 };
 
 /// A whole emissive object seen as one point. (SH-39)
 struct RasterEmitter {
     dvec3 radiance{0};
-    double area = 0;            ///< m²
-    dvec3 area_normal{0};       ///< Σ area · normal; 0 for spheres
-    dvec3 center{0};            ///< weighted by area
+    double area = 0;       ///< m²
+    dvec3 area_normal{0};  ///< Σ area · normal; 0 for spheres
+    dvec3 center{0};       ///< weighted by area
     std::uint32_t object = 0;
     bool two_sided = false;
 };
@@ -43,7 +43,7 @@ Incident incident(const RasterEmitter& emitter, const dvec3& p);
 
 /// The rasterizer's light and materials: docs/shading.md §4, without shadows.
 class RasterShader {
-   public:
+ public:
     RasterShader(const World& world, const RenderSettings& settings);
 
     /// Nothing where MASK discards the fragment.
@@ -52,7 +52,7 @@ class RasterShader {
     Shaded background(const dvec2& film) const;
     const CameraRays& camera() const { return camera_; }
 
-   private:
+ private:
     dvec3 towards_viewer(const dvec3& position) const;
 
     const World* world_;
@@ -66,12 +66,12 @@ class RasterShader {
 
 /// How a material reflects in a rasterizer. (SH-31), (SH-37)
 struct RasterMaterial {
-    dvec3 diffuse{0};       ///< c_diff
+    dvec3 diffuse{0};  ///< c_diff
     dvec3 f0{0};
-    double roughness = 1;   ///< perceptual
-    double alpha = 1;       ///< GGX
+    double roughness = 1;  ///< perceptual
+    double alpha = 1;      ///< GGX
     bool has_specular = true;
-    bool is_mirror = false; ///< reflects the environment alone
+    bool is_mirror = false;  ///< reflects the environment alone
 };
 RasterMaterial raster_material(const Material& material, const MaterialPoint& point);
 

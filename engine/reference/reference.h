@@ -9,11 +9,13 @@ namespace etalon::reference {
 
 /// The path tracer of docs/equations.md in double precision: settings.spp samples a pixel, independent of shaders/lib.
 /// Deterministic whatever the thread count. Stops early, with what it has, when `progress` says so.
-Film render_path(const PosedScene& posed, const Requirements& required, const RenderSettings& settings, const Progress& progress);
+Film render_path(const PosedScene& posed, const Requirements& required, const RenderSettings& settings,
+                 const Progress& progress);
 
 /// The rasterizer of the notes, stage by stage, in double precision: edge functions with the top-left rule,
-/// perspective-correct interpolation, mip level from derivatives, trilinear filtering, the shading of docs/shading.md §4,
-/// at settings.msaa sample positions (Vulkan's standard ones).
-Film render_raster(const PosedScene& posed, const Requirements& required, const RenderSettings& settings, const Progress& progress);
+/// perspective-correct interpolation, mip level from derivatives, trilinear filtering, the shading of docs/shading.md
+/// §4, at settings.msaa sample positions (Vulkan's standard ones).
+Film render_raster(const PosedScene& posed, const Requirements& required, const RenderSettings& settings,
+                   const Progress& progress);
 
 }  // namespace etalon::reference

@@ -12,13 +12,13 @@
 namespace etalon::reference {
 namespace {
 
-constexpr std::size_t kTile = 16;              // pixels a side: one unit of work of a thread
-constexpr double kSecondsPerPass = 0.5;        // how long a stop may have to wait for whole passes, roughly
+constexpr std::size_t kTile = 16;        // pixels a side: one unit of work of a thread
+constexpr double kSecondsPerPass = 0.5;  // how long a stop may have to wait for whole passes, roughly
 constexpr std::uint64_t kMaxSamples = 0xffffffffu;
 
 /// The samples of a picture so far. A pass gives every pixel the same number more, or, stopped, leaves all as it was.
 class Accumulation {
-   public:
+ public:
     Accumulation(const PathTracer& tracer, int width, int height, std::uint64_t seed, unsigned threads)
         : tracer_(&tracer),
           width_(static_cast<std::size_t>(width)),
@@ -35,10 +35,13 @@ class Accumulation {
         const std::size_t across = (width_ + kTile - 1) / kTile, down = (height_ + kTile - 1) / kTile;
         std::vector<std::uint64_t> truncated(across * down, 0);
         std::atomic<bool> stopped = false;
-        parallel_for(across * down, [&](std::size_t tile) {
-            if (may_stop && progress.stopped()) stopped = true;
-            if (!stopped) truncated[tile] = render_tile(tile % across, tile / across, count);
-        }, threads_);
+        parallel_for(
+            across * down,
+            [&](std::size_t tile) {
+                if (may_stop && progress.stopped()) stopped = true;
+                if (!stopped) truncated[tile] = render_tile(tile % across, tile / across, count);
+            },
+            threads_);
         if (stopped) return false;
         std::swap(sums_, next_);
         samples_ += count;
@@ -50,7 +53,7 @@ class Accumulation {
     std::uint64_t samples() const { return samples_; }
     std::uint64_t truncated() const { return truncated_; }
 
-   private:
+ private:
     std::uint64_t render_tile(std::size_t tile_x, std::size_t tile_y, std::uint64_t count)
     {
         std::uint64_t truncated = 0;
@@ -81,7 +84,8 @@ class Accumulation {
 
 }  // namespace
 
-Film render_path(const PosedScene& posed, const Requirements& required, const RenderSettings& settings, const Progress& progress)
+Film render_path(const PosedScene& posed, const Requirements& required, const RenderSettings& settings,
+                 const Progress& progress)
 {
     assume(posed.scene != nullptr && posed.view.width > 0 && posed.view.height > 0);
     if (settings.spp < 1 || settings.spp > kMaxSamples)
@@ -91,7 +95,8 @@ Film render_path(const PosedScene& posed, const Requirements& required, const Re
     const PathTracer tracer(posed, world, settings);
     Accumulation picture(tracer, posed.view.width, posed.view.height, settings.seed, settings.threads);
 
-    // How many samples a pass has never changes a bit: each is a function of its number alone, and they are added in order.
+    // How many samples a pass has never changes a bit: each is a function of its number alone, and they are added in
+    // order.
     std::uint64_t count = 1;
     while (picture.samples() < settings.spp && !(picture.samples() > 0 && progress.stopped())) {
         const auto begin = std::chrono::steady_clock::now();

@@ -21,14 +21,18 @@ std::vector<FixedPoint> sample_positions(int count)
     return {{128, 128}};
 }
 
-dvec2 in_pixels(const FixedPoint& p) { return dvec2(p.x, p.y) / static_cast<double>(kSubPixels); }
+dvec2 in_pixels(const FixedPoint& p)
+{
+    return dvec2(p.x, p.y) / static_cast<double>(kSubPixels);
+}
 
 /// Far enough for everything, for orthographic depth (TF-5).
 double far_plane(const PosedScene& posed, const CameraRays& camera)
 {
     double far = posed.view.camera.znear * 2 + 1;
     for (int corner = 0; corner < 8; ++corner) {
-        const dvec3 p(corner & 1 ? posed.bounds_max.x : posed.bounds_min.x, corner & 2 ? posed.bounds_max.y : posed.bounds_min.y,
+        const dvec3 p(corner & 1 ? posed.bounds_max.x : posed.bounds_min.x,
+                      corner & 2 ? posed.bounds_max.y : posed.bounds_min.y,
                       corner & 4 ? posed.bounds_max.z : posed.bounds_min.z);
         far = std::max(far, camera.depth(p) * 1.001);
     }
@@ -44,7 +48,8 @@ struct DrawList {
 bool blends(const PosedScene& posed, std::uint32_t object)
 {
     const std::size_t draws = posed.draws.size();
-    const Index material = object < draws ? posed.primitive(posed.draws[object]).material : posed.spheres[object - draws].material;
+    const Index material =
+        object < draws ? posed.primitive(posed.draws[object]).material : posed.spheres[object - draws].material;
     return posed.scene->materials[material].alpha_mode == AlphaMode::blend;
 }
 
@@ -70,7 +75,8 @@ DrawList make_draw_list(const PosedScene& posed, const CameraRays& camera)
         order[i] = i;
         if (blends(posed, i)) depth[i] = sorting_depth(posed, camera, i);
     }
-    const auto middle = std::stable_partition(order.begin(), order.end(), [&](std::uint32_t i) { return !blends(posed, i); });
+    const auto middle =
+        std::stable_partition(order.begin(), order.end(), [&](std::uint32_t i) { return !blends(posed, i); });
     std::stable_sort(middle, order.end(), [&](std::uint32_t a, std::uint32_t b) { return depth[a] > depth[b]; });
 
     const dmat4 clip_from_camera = projection(posed.view, far_plane(posed, camera));
@@ -90,7 +96,7 @@ DrawList make_draw_list(const PosedScene& posed, const CameraRays& camera)
 
 /// Some rows of the picture with all their samples.
 class Band {
-   public:
+ public:
     Band(const World& world, const RasterShader& shader, int y0, int y1, int samples)
         : world_(&world),
           posed_(world.posed),
@@ -100,7 +106,8 @@ class Band {
           far_(far_plane(*world.posed, shader.camera())),
           positions_(sample_positions(samples))
     {
-        const auto count = static_cast<std::size_t>(posed_->view.width) * static_cast<std::size_t>(y1 - y0) * positions_.size();
+        const auto count =
+            static_cast<std::size_t>(posed_->view.width) * static_cast<std::size_t>(y1 - y0) * positions_.size();
         color_.reserve(count);
         for (int y = y0; y < y1; ++y)
             for (int x = 0; x < posed_->view.width; ++x) {
@@ -114,7 +121,8 @@ class Band {
     {
         const bool sphere = piece.object >= posed_->draws.size();
         for (int y = std::max(piece.y0, y0_); y < std::min(piece.y1, y1_); ++y)
-            for (int x = piece.x0; x < piece.x1; ++x) sphere ? draw_sphere(piece, x, y, blend) : draw_triangle(piece, x, y, blend);
+            for (int x = piece.x0; x < piece.x1; ++x)
+                sphere ? draw_sphere(piece, x, y, blend) : draw_triangle(piece, x, y, blend);
     }
 
     /// Mean of the samples (SH-30): radiance and coverage.
@@ -125,10 +133,11 @@ class Band {
         return sum / static_cast<double>(positions_.size());
     }
 
-   private:
+ private:
     std::size_t at(int x, int y) const
     {
-        return (static_cast<std::size_t>(y - y0_) * static_cast<std::size_t>(posed_->view.width) + static_cast<std::size_t>(x)) *
+        return (static_cast<std::size_t>(y - y0_) * static_cast<std::size_t>(posed_->view.width) +
+                static_cast<std::size_t>(x)) *
                positions_.size();
     }
 
@@ -173,8 +182,8 @@ void Band::draw_triangle(const Piece& piece, int x, int y, bool blend)
     if (const auto fragment = triangle_fragment(piece, x, y, *first)) write(x, y, depth, *fragment, blend);
 }
 
-// Attributes at the pixel's centre, even where that lies outside (SH-30); where the triangle's plane does not reach the centre,
-// at a sample that it covers.
+// Attributes at the pixel's centre, even where that lies outside (SH-30); where the triangle's plane does not reach the
+// centre, at a sample that it covers.
 std::optional<Fragment> Band::triangle_fragment(const Piece& piece, int x, int y, const FixedPoint& covered) const
 {
     Interpolation at = interpolate(piece, {x + 0.5, y + 0.5});
@@ -198,7 +207,8 @@ std::optional<Fragment> Band::triangle_fragment(const Piece& piece, int x, int y
     for (std::size_t set = 0; set < 2; ++set) {
         if (primitive.uv[set].empty()) continue;
         const dvec2 uv0(primitive.uv[set][piece.vertices[0]]);
-        const dvec2 e1 = dvec2(primitive.uv[set][piece.vertices[1]]) - uv0, e2 = dvec2(primitive.uv[set][piece.vertices[2]]) - uv0;
+        const dvec2 e1 = dvec2(primitive.uv[set][piece.vertices[1]]) - uv0,
+                    e2 = dvec2(primitive.uv[set][piece.vertices[2]]) - uv0;
         texture.uv_dx[set] = at.b_dx.x * e1 + at.b_dx.y * e2;
         texture.uv_dy[set] = at.b_dy.x * e1 + at.b_dy.y * e2;
     }
@@ -209,13 +219,15 @@ std::optional<Fragment> Band::triangle_fragment(const Piece& piece, int x, int y
     return out;
 }
 
-/// Where a camera ray meets a sphere that a rasterizer draws: beyond the near plane, the back only where it is not culled.
+/// Where a camera ray meets a sphere that a rasterizer draws: beyond the near plane, the back only where it is not
+/// culled.
 struct SphereMeeting {
     double t = 0;
     bool front = true;
 };
 
-std::optional<SphereMeeting> meet(const PosedScene& posed, const PosedSphere& sphere, const CameraRays& camera, const Ray& ray)
+std::optional<SphereMeeting> meet(const PosedScene& posed, const PosedSphere& sphere, const CameraRays& camera,
+                                  const Ray& ray)
 {
     const Material& m = posed.scene->materials[sphere.material];
     const bool cull = !m.double_sided && !is_dielectric(m.model);
@@ -290,11 +302,13 @@ void Band::write(int x, int y, const std::array<double, 4>& depth, const Fragmen
 
 }  // namespace
 
-Film render_raster(const PosedScene& posed, const Requirements& required, const RenderSettings& settings, const Progress& progress)
+Film render_raster(const PosedScene& posed, const Requirements& required, const RenderSettings& settings,
+                   const Progress& progress)
 {
     assume(posed.scene != nullptr && posed.view.width > 0 && posed.view.height > 0);
     if (settings.msaa != 1 && settings.msaa != 4)
-        throw Error(Blame::input, "the rasterizer takes 1 or 4 samples per pixel, not " + std::to_string(settings.msaa));
+        throw Error(Blame::input,
+                    "the rasterizer takes 1 or 4 samples per pixel, not " + std::to_string(settings.msaa));
     progress.report({.stage = "decoding textures", .fraction = 0, .error = {}, .samples = {}});
     const World world(posed, required.texture_used, settings.mipmaps);
     const RasterShader shader(world, settings);
@@ -305,7 +319,8 @@ Film render_raster(const PosedScene& posed, const Requirements& required, const 
     std::vector<std::vector<std::uint32_t>> by_band(bands);
     for (std::uint32_t i = 0; i < list.pieces.size(); ++i) {
         const Piece& piece = list.pieces[i];
-        for (int b = piece.y0 / kBandRows; b * kBandRows < piece.y1; ++b) by_band[static_cast<std::size_t>(b)].push_back(i);
+        for (int b = piece.y0 / kBandRows; b * kBandRows < piece.y1; ++b)
+            by_band[static_cast<std::size_t>(b)].push_back(i);
     }
 
     Film film;
@@ -315,20 +330,24 @@ Film render_raster(const PosedScene& posed, const Requirements& required, const 
     film.mean.assign(film.pixel_count(), vec3(0));
     film.alpha.assign(film.pixel_count(), 0);
     std::vector<std::uint64_t> nonfinite(bands, 0);
-    parallel_for(bands, [&](std::size_t b) {
-        if (progress.stopped()) return;
-        const int y0 = static_cast<int>(b) * kBandRows, y1 = std::min(height, y0 + kBandRows);
-        Band band(world, shader, y0, y1, settings.msaa);
-        for (const std::uint32_t i : by_band[b]) band.draw(list.pieces[i], i >= list.first_blended);
-        for (int y = y0; y < y1; ++y)
-            for (int x = 0; x < width; ++x) {
-                const dvec4 pixel = band.resolve(x, y);
-                const std::size_t at = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-                film.mean[at] = vec3(pixel);
-                film.alpha[at] = static_cast<float>(pixel.w);
-                if (!is_finite(dvec3(pixel))) ++nonfinite[b];
-            }
-    }, settings.threads);
+    parallel_for(
+        bands,
+        [&](std::size_t b) {
+            if (progress.stopped()) return;
+            const int y0 = static_cast<int>(b) * kBandRows, y1 = std::min(height, y0 + kBandRows);
+            Band band(world, shader, y0, y1, settings.msaa);
+            for (const std::uint32_t i : by_band[b]) band.draw(list.pieces[i], i >= list.first_blended);
+            for (int y = y0; y < y1; ++y)
+                for (int x = 0; x < width; ++x) {
+                    const dvec4 pixel = band.resolve(x, y);
+                    const std::size_t at =
+                        static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+                    film.mean[at] = vec3(pixel);
+                    film.alpha[at] = static_cast<float>(pixel.w);
+                    if (!is_finite(dvec3(pixel))) ++nonfinite[b];
+                }
+        },
+        settings.threads);
     for (const std::uint64_t n : nonfinite) film.nonfinite += n;
     if (settings.aovs) film.aovs = render_aovs(world, shader.camera(), true, settings.threads);
     progress.report({.stage = "rasterizing", .fraction = 1, .error = {}, .samples = {}});

@@ -3,9 +3,9 @@
 namespace etalon::reference {
 namespace {
 
-constexpr std::size_t kLeaf = 4;        // shapes that a leaf may hold
-constexpr int kBins = 16;               // candidate planes of the area heuristic, per axis
-constexpr int kHeuristicDepth = 48;     // below it halves: 48 + log2(2^32 / kLeaf) stays under kMaxDepth
+constexpr std::size_t kLeaf = 4;     // shapes that a leaf may hold
+constexpr int kBins = 16;            // candidate planes of the area heuristic, per axis
+constexpr int kHeuristicDepth = 48;  // below it halves: 48 + log2(2^32 / kLeaf) stays under kMaxDepth
 
 }  // namespace
 
@@ -95,7 +95,10 @@ void SceneIndex::build(std::vector<Piece>& pieces, std::size_t begin, std::size_
     Box box, centers;
     for (std::size_t i = begin; i < end; ++i) box.add(pieces[i].box), centers.add(pieces[i].center);
     const std::size_t self = nodes_.size();
-    nodes_.push_back({.box = box, .index = static_cast<std::uint32_t>(begin), .count = static_cast<std::uint32_t>(end - begin), .axis = 0});
+    nodes_.push_back({.box = box,
+                      .index = static_cast<std::uint32_t>(begin),
+                      .count = static_cast<std::uint32_t>(end - begin),
+                      .axis = 0});
     if (end - begin <= kLeaf) return;
 
     int best_axis = -1, best_plane = 0;
@@ -144,9 +147,11 @@ void SceneIndex::build(std::vector<Piece>& pieces, std::size_t begin, std::size_
         middle = static_cast<std::size_t>(split - pieces.begin());
     } else {  // too deep, or all centres in one place: halves
         best_axis = extent.x > extent.y ? (extent.x > extent.z ? 0 : 2) : (extent.y > extent.z ? 1 : 2);
-        std::nth_element(first, first + static_cast<std::ptrdiff_t>(middle - begin), last, [&](const Piece& a, const Piece& b) {
-            return a.center[best_axis] != b.center[best_axis] ? a.center[best_axis] < b.center[best_axis] : a.shape < b.shape;
-        });
+        std::nth_element(
+            first, first + static_cast<std::ptrdiff_t>(middle - begin), last, [&](const Piece& a, const Piece& b) {
+                return a.center[best_axis] != b.center[best_axis] ? a.center[best_axis] < b.center[best_axis]
+                                                                  : a.shape < b.shape;
+            });
     }
     nodes_[self].count = 0;
     nodes_[self].axis = static_cast<std::uint32_t>(best_axis);

@@ -26,8 +26,8 @@ struct Shape {
 /// Where a ray meets a shape.
 struct Hit {
     double t = 0;
-    double b1 = 0, b2 = 0;       ///< triangles: p = p0 + b1 (p1 - p0) + b2 (p2 - p0)
-    std::uint32_t shape = 0;     ///< index into SceneIndex::shapes()
+    double b1 = 0, b2 = 0;    ///< triangles: p = p0 + b1 (p1 - p0) + b2 (p2 - p0)
+    std::uint32_t shape = 0;  ///< index into SceneIndex::shapes()
 };
 
 /// (SH-1) The geometric normal at `p`, unit, towards the glTF front; 0 for a triangle without area.
@@ -36,7 +36,7 @@ dvec3 geometric_normal(const Shape& shape, const dvec3& p);
 /// The shapes of a scene and a tree of boxes over them, all in double. Answers are those of trying every shape, bit for
 /// bit: `closest_of_all` does just that.
 class SceneIndex {
-   public:
+ public:
     explicit SceneIndex(const PosedScene& posed);
 
     const std::vector<Shape>& shapes() const { return shapes_; }
@@ -53,7 +53,7 @@ class SceneIndex {
     template <class Transmit>
     double transmittance(const Ray& ray, Transmit&& transmit) const;
 
-   private:
+ private:
     struct Box {
         dvec3 low{std::numeric_limits<double>::infinity()};
         dvec3 high{-std::numeric_limits<double>::infinity()};
@@ -65,7 +65,8 @@ class SceneIndex {
             return d.x < 0 ? 0 : d.x * d.y + d.y * d.z + d.z * d.x;
         }
     };
-    /// 64 bytes, one cache line. Inner: the first child follows, the second is at `index`. Leaf: shapes index … + count.
+    /// 64 bytes, one cache line. Inner: the first child follows, the second is at `index`. Leaf: shapes index … +
+    /// count.
     struct Node {
         Box box;
         std::uint32_t index = 0;
@@ -122,7 +123,8 @@ void SceneIndex::meet(std::uint32_t shape, const Ray& ray, const ShearedRay& she
     const Shape& s = shapes_[shape];
     if (s.is_sphere()) {
         const SphereHits hits = intersect_sphere(ray, s.p0, s.p1.x);
-        for (int i = 0; i < hits.count; ++i) visit(Hit{.t = hits.t[static_cast<std::size_t>(i)], .b1 = 0, .b2 = 0, .shape = shape});
+        for (int i = 0; i < hits.count; ++i)
+            visit(Hit{.t = hits.t[static_cast<std::size_t>(i)], .b1 = 0, .b2 = 0, .shape = shape});
     } else if (const auto hit = intersect_triangle(sheared, s.p0, s.p1, s.p2)) {
         visit(Hit{.t = hit->t, .b1 = hit->b1, .b2 = hit->b2, .shape = shape});
     }

@@ -39,7 +39,10 @@ bool is_exact_model(BsdfModel model)
     return model != BsdfModel::metallic_roughness && model != BsdfModel::unlit;
 }
 
-bool is_dielectric(BsdfModel model) { return model == BsdfModel::dielectric || model == BsdfModel::rough_dielectric; }
+bool is_dielectric(BsdfModel model)
+{
+    return model == BsdfModel::dielectric || model == BsdfModel::rough_dielectric;
+}
 
 World::World(const PosedScene& p, const std::vector<bool>& textures_used, bool mipmaps)
     : posed(&p), index(p), textures(*p.scene, textures_used, mipmaps)
@@ -69,14 +72,16 @@ Attributes interpolate(const Primitive& primitive, const World::Frame& frame, co
 MaterialPoint evaluate(const Material& m, const TextureSet& textures, const Attributes& attributes)
 {
     MaterialPoint out;
-    const dvec4 base = m.base_color * attributes.color * textures.sample(m.base_color_texture, Coding::srgb, attributes.at);
+    const dvec4 base =
+        m.base_color * attributes.color * textures.sample(m.base_color_texture, Coding::srgb, attributes.at);
     out.color = dvec3(base);
     out.alpha = m.alpha_mode == AlphaMode::opaque ? 1 : base.w;
     const dvec4 mr = textures.sample(m.metallic_roughness_texture, Coding::linear, attributes.at);
     out.metallic = m.metallic * mr.z;
     out.roughness = m.roughness * mr.y;
     if (m.occlusion_texture.present())
-        out.occlusion = 1 + m.occlusion_strength * (textures.sample(m.occlusion_texture, Coding::linear, attributes.at).x - 1);
+        out.occlusion =
+            1 + m.occlusion_strength * (textures.sample(m.occlusion_texture, Coding::linear, attributes.at).x - 1);
     if (m.model == BsdfModel::unlit)
         out.emission = out.color;
     else if (m.emission != dvec3(0))
@@ -115,7 +120,8 @@ Bsdf bsdf_of(const Material& m, const MaterialPoint& point, bool front)
             bsdf.ior = front ? m.eta.x : 1 / m.eta.x;
             bsdf.alpha = std::max(m.ggx_alpha, kSmallestAlpha);
             break;
-        default: break;
+        default:
+            break;
     }
     return bsdf;
 }

@@ -26,48 +26,50 @@ struct World {
     const PosedScene* posed;
     SceneIndex index;
     TextureSet textures;
-    std::vector<Frame> frames;          ///< of each draw
-    std::vector<bool> always_opaque;    ///< per material: stops every ray, whatever its side
+    std::vector<Frame> frames;        ///< of each draw
+    std::vector<bool> always_opaque;  ///< per material: stops every ray, whatever its side
 };
 
 /// Vertex attributes at a point of a triangle, line or point: a0 + b1 (a1 - a0) + b2 (a2 - a0) each (TR-4).
 struct Attributes {
-    dvec3 normal{0};         ///< world; 0: the file gives none, the geometric one holds
-    dvec4 tangent{0};        ///< world, w = the bitangent's sign; 0: none
+    dvec3 normal{0};   ///< world; 0: the file gives none, the geometric one holds
+    dvec4 tangent{0};  ///< world, w = the bitangent's sign; 0: none
     dvec4 color{1};
     TexturePoint at;
 };
 
 /// `vertices`: the element's three entries of `indices` (repeat the last for lines and points).
-Attributes interpolate(const Primitive& primitive, const World::Frame& frame, const std::array<std::uint32_t, 3>& vertices,
-                       double b1, double b2);
+Attributes interpolate(const Primitive& primitive, const World::Frame& frame,
+                       const std::array<std::uint32_t, 3>& vertices, double b1, double b2);
 
 /// A material's numbers at one point: factors times textures times vertex colour. (SH-5)
 struct MaterialPoint {
     dvec3 color{1};
-    double alpha = 1;        ///< 1 for opaque materials
+    double alpha = 1;  ///< 1 for opaque materials
     double metallic = 0;
     double roughness = 1;
-    double occlusion = 1;    ///< (SH-36)
-    dvec3 emission{0};       ///< (SH-21), before the side is known; base colour of unlit (SH-15)
+    double occlusion = 1;  ///< (SH-36)
+    dvec3 emission{0};     ///< (SH-21), before the side is known; base colour of unlit (SH-15)
 };
 MaterialPoint evaluate(const Material& material, const TextureSet& textures, const Attributes& attributes);
 
-/// (SH-2) The shading normal, unit, on the geometric one's side as the file means it. `ng` where there is nothing better.
-dvec3 shading_normal(const Material& material, const TextureSet& textures, const Attributes& attributes, const dvec3& ng);
+/// (SH-2) The shading normal, unit, on the geometric one's side as the file means it. `ng` where there is nothing
+/// better.
+dvec3 shading_normal(const Material& material, const TextureSet& textures, const Attributes& attributes,
+                     const dvec3& ng);
 
 /// Everything known where a ray meets a surface.
 struct Surface {
     dvec3 position{0};
-    dvec3 error{0};          ///< the true position lies within ± this (RT-6)
-    dvec3 ng{0};             ///< geometric normal, unit, on the viewer's side
-    dvec3 n{0};              ///< shading normal, unit, turned with ng (SH-3)
-    bool front = true;       ///< the viewer is on the side that ng of the file points to
-    dvec3 emission{0};       ///< towards the viewer
+    dvec3 error{0};     ///< the true position lies within ± this (RT-6)
+    dvec3 ng{0};        ///< geometric normal, unit, on the viewer's side
+    dvec3 n{0};         ///< shading normal, unit, turned with ng (SH-3)
+    bool front = true;  ///< the viewer is on the side that ng of the file points to
+    dvec3 emission{0};  ///< towards the viewer
     MaterialPoint point;
     Attributes attributes;
     Bsdf bsdf;
-    bool is_black = false;   ///< scatters nothing
+    bool is_black = false;  ///< scatters nothing
     std::uint32_t object = 0;
     Index material = 0;
 };

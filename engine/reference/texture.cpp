@@ -7,7 +7,10 @@ namespace etalon::reference {
 namespace {
 
 // (TX-5)
-double linear_from_coded(double c) { return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); }
+double linear_from_coded(double c)
+{
+    return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+}
 
 const std::array<double, 256>& linear_from_byte()
 {
@@ -72,7 +75,8 @@ ivec2 MipChain::size(int level) const
 
 dvec4 MipChain::texel(int level, int x, int y) const
 {
-    const std::size_t at = static_cast<std::size_t>(y) * static_cast<std::size_t>(size(level).x) + static_cast<std::size_t>(x);
+    const std::size_t at =
+        static_cast<std::size_t>(y) * static_cast<std::size_t>(size(level).x) + static_cast<std::size_t>(x);
     if (level > 0) return coarser_[static_cast<std::size_t>(level - 1)].texels[at];
     if (texels_->is_8_bit) {
         const std::uint8_t* code = texels_->bytes.data() + 4 * at;
@@ -91,12 +95,14 @@ int wrap_texel(long long i, int size, Wrap wrap)
 {
     const long long n = size;
     switch (wrap) {
-        case Wrap::clamp_to_edge: return static_cast<int>(std::clamp(i, 0LL, n - 1));
+        case Wrap::clamp_to_edge:
+            return static_cast<int>(std::clamp(i, 0LL, n - 1));
         case Wrap::mirrored_repeat: {
             const long long m = ((i % (2 * n)) + 2 * n) % (2 * n);
             return static_cast<int>(m < n ? m : 2 * n - 1 - m);
         }
-        case Wrap::repeat: break;
+        case Wrap::repeat:
+            break;
     }
     return static_cast<int>(((i % n) + n) % n);
 }
@@ -148,7 +154,8 @@ dvec4 sample_mips(const MipChain& mips, const Sampler& sampler, const dvec2& uv,
     return (1 - blend) * a + blend * sample_level(mips, sampler, sampler.min, uv, coarse);
 }
 
-TextureSet::TextureSet(const Scene& scene, const std::vector<bool>& used, bool mipmaps) : scene_(&scene), mipmaps_(mipmaps)
+TextureSet::TextureSet(const Scene& scene, const std::vector<bool>& used, bool mipmaps)
+    : scene_(&scene)
 {
     by_texture_.resize(scene.textures.size(), {nullptr, nullptr});
     const auto add = [&](const TextureUse& use, Coding coding) {

@@ -19,16 +19,16 @@ struct TexturePoint {
     bool has_footprint = false;  ///< false: level 0 with the magnification filter, as path tracers read (SH-5)
 };
 
-/// An image in linear light with its box-filtered levels; each half the size of the one above, rounded down, at least 1.
-/// Level 0 is decoded as it is read.
+/// An image in linear light with its box-filtered levels; each half the size of the one above, rounded down, at
+/// least 1. Level 0 is decoded as it is read.
 class MipChain {
-   public:
+ public:
     MipChain(const Texels& texels, Coding coding, bool all_levels);
     int levels() const { return 1 + static_cast<int>(coarser_.size()); }
     ivec2 size(int level) const;
     dvec4 texel(int level, int x, int y) const;  ///< x, y inside the level
 
-   private:
+ private:
     struct Level {
         ivec2 size{0};
         std::vector<dvec4> texels;
@@ -38,8 +38,8 @@ class MipChain {
     std::vector<Level> coarser_;
 };
 
-/// One row or column of `count` values averaged into `target` values, each the exact mean of the stretch that it covers: for
-/// odd counts the polyphase weights of (TX-4), promise T8; for any counts (SH-41).
+/// One row or column of `count` values averaged into `target` values, each the exact mean of the stretch that it
+/// covers: for odd counts the polyphase weights of (TX-4), promise T8; for any counts (SH-41).
 struct BoxWeights {
     struct Tap {
         int index;
@@ -61,7 +61,7 @@ dvec4 sample_mips(const MipChain& mips, const Sampler& sampler, const dvec2& uv,
 
 /// Every texture that a scene's materials use, decoded once.
 class TextureSet {
-   public:
+ public:
     /// `used`: per Scene::textures (empty: all). `mipmaps`: build the levels below 0, for rasterizers.
     TextureSet(const Scene& scene, const std::vector<bool>& used, bool mipmaps);
     TextureSet(const TextureSet&) = delete;
@@ -70,9 +70,8 @@ class TextureSet {
     /// The texture of `use` at `at`; (1, 1, 1, 1) where there is none.
     dvec4 sample(const TextureUse& use, Coding coding, const TexturePoint& at) const;
 
-   private:
+ private:
     const Scene* scene_;
-    bool mipmaps_;
     std::map<std::pair<Index, Coding>, MipChain> chains_;  // by image
     std::vector<std::array<const MipChain*, 2>> by_texture_;
 };

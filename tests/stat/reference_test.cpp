@@ -27,7 +27,10 @@ using test::Random;
 constexpr double kFalseAlarm = 1e-3;
 constexpr int kComparisons = 120;
 
-double level() { return sidak_level(kFalseAlarm, kComparisons); }
+double level()
+{
+    return sidak_level(kFalseAlarm, kComparisons);
+}
 
 /// Whether two means with these variances may be one, at the file's level.
 ::testing::AssertionResult agree(double a, double variance_a, double b, double variance_b)
@@ -37,9 +40,13 @@ double level() { return sidak_level(kFalseAlarm, kComparisons); }
     return ::testing::AssertionFailure() << a << " and " << b << " are " << z << " standard errors apart";
 }
 
-dvec3 at_angle(double theta) { return {std::sin(theta), 0, std::cos(theta)}; }
+dvec3 at_angle(double theta)
+{
+    return {std::sin(theta), 0, std::cos(theta)};
+}
 
-/// Bins of the sphere: rings about the direction in which wo is mirrored, narrow there and at the opposite, times sectors.
+/// Bins of the sphere: rings about the direction in which wo is mirrored, narrow there and at the opposite, times
+/// sectors.
 class Bins {
  public:
     explicit Bins(const dvec3& wo) : axis_(-wo.x, -wo.y, wo.z)
@@ -68,9 +75,12 @@ class Bins {
             for (int sector = 0; sector < kSectors; ++sector)
                 for (int i = 0; i < kSteps; ++i)
                     for (int j = 0; j < kSteps; ++j) {
-                        const double low = angle(ring + static_cast<double>(i) / kSteps), high = angle(ring + (i + 1.0) / kSteps);
-                        const double theta = 0.5 * (low + high), phi = 2 * kPi * (sector + (j + 0.5) / kSteps) / kSectors;
-                        const dvec3 w = std::sin(theta) * (std::cos(phi) * t_ + std::sin(phi) * b_) + std::cos(theta) * axis_;
+                        const double low = angle(ring + static_cast<double>(i) / kSteps),
+                                     high = angle(ring + (i + 1.0) / kSteps);
+                        const double theta = 0.5 * (low + high),
+                                     phi = 2 * kPi * (sector + (j + 0.5) / kSteps) / kSectors;
+                        const dvec3 w =
+                            std::sin(theta) * (std::cos(phi) * t_ + std::sin(phi) * b_) + std::cos(theta) * axis_;
                         out[static_cast<std::size_t>(ring * kSectors + sector)] +=
                             pdf(w) * (std::cos(low) - std::cos(high)) * 2 * kPi / kSectors / kSteps;
                     }
@@ -87,15 +97,18 @@ class Bins {
 };
 
 /// p-value of the draws of a sampler (nothing: dropped) against its own density.
-double chi_square(const Bins& bins, const std::function<std::optional<dvec3>()>& draw, const std::function<double(const dvec3&)>& pdf)
+double chi_square(const Bins& bins, const std::function<std::optional<dvec3>()>& draw,
+                  const std::function<double(const dvec3&)>& pdf)
 {
     constexpr int kDraws = 60000;
     std::vector<double> expected = bins.integrate(pdf), counts(expected.size(), 0);
     double inside = 0, dropped = 0;
     for (double& e : expected) inside += e, e *= kDraws;
     for (int i = 0; i < kDraws; ++i) {
-        if (const auto w = draw()) counts[bins.of(*w)] += 1;
-        else dropped += 1;
+        if (const auto w = draw())
+            counts[bins.of(*w)] += 1;
+        else
+            dropped += 1;
     }
     expected.push_back(std::max(0.0, 1 - inside) * kDraws);
     counts.push_back(dropped);
@@ -103,11 +116,15 @@ double chi_square(const Bins& bins, const std::function<std::optional<dvec3>()>&
     int cells = 0;
     const auto add = [&](double count, double e) { statistic += (count - e) * (count - e) / e, ++cells; };
     for (std::size_t i = 0; i < expected.size(); ++i) {
-        if (expected[i] >= 10) add(counts[i], expected[i]);
-        else rest_expected += expected[i], rest_count += counts[i];
+        if (expected[i] >= 10)
+            add(counts[i], expected[i]);
+        else
+            rest_expected += expected[i], rest_count += counts[i];
     }
-    if (rest_expected >= 10) add(rest_count, rest_expected);
-    else if (rest_count > 40) return 0;  // draws where there should be none
+    if (rest_expected >= 10)
+        add(rest_count, rest_expected);
+    else if (rest_count > 40)
+        return 0;  // draws where there should be none
     return chi_square_p(statistic, cells - 1);
 }
 
@@ -121,8 +138,11 @@ std::vector<Named> models()
     std::vector<Named> all{{"lambert", {.model = BsdfModel::lambert, .color = dvec3(0.5)}}};
     for (const double alpha : {0.15, 0.5, 1.0}) {
         const std::string a = " " + std::to_string(alpha);
-        all.push_back({"conductor" + a, {.model = BsdfModel::rough_conductor, .alpha = alpha, .eta = dvec3(0.2), .k = dvec3(3.9)}});
-        all.push_back({"plastic" + a, {.model = BsdfModel::metallic_roughness, .color = dvec3(0.5), .f0 = dvec3(0.04), .alpha = alpha}});
+        all.push_back({"conductor" + a,
+                       {.model = BsdfModel::rough_conductor, .alpha = alpha, .eta = dvec3(0.2), .k = dvec3(3.9)}});
+        all.push_back(
+            {"plastic" + a,
+             {.model = BsdfModel::metallic_roughness, .color = dvec3(0.5), .f0 = dvec3(0.04), .alpha = alpha}});
         all.push_back({"glass, outside" + a, {.model = BsdfModel::rough_dielectric, .alpha = alpha, .ior = 1.5}});
         all.push_back({"glass, inside" + a, {.model = BsdfModel::rough_dielectric, .alpha = alpha, .ior = 1 / 1.5}});
     }
@@ -135,10 +155,13 @@ TEST(ReferenceStatistics, MC_6_S15_every_BSDF_draws_what_its_density_says)
     for (const auto& [name, bsdf] : models())
         for (const double theta : {0.0, 0.9, 1.45}) {
             const dvec3 wo = at_angle(theta);
-            const double p = chi_square(Bins(wo), [&, b = bsdf]() -> std::optional<dvec3> {
-                const auto drawn = sample(b, wo, {random.uniform(), random.uniform(), random.uniform()});
-                return drawn ? std::optional(drawn->wi) : std::nullopt;
-            }, [&, b = bsdf](const dvec3& wi) { return pdf(b, wo, wi); });
+            const double p = chi_square(
+                Bins(wo),
+                [&, b = bsdf]() -> std::optional<dvec3> {
+                    const auto drawn = sample(b, wo, {random.uniform(), random.uniform(), random.uniform()});
+                    return drawn ? std::optional(drawn->wi) : std::nullopt;
+                },
+                [&, b = bsdf](const dvec3& wi) { return pdf(b, wo, wi); });
             EXPECT_GT(p, level()) << name << " at " << theta;
         }
 }
@@ -150,10 +173,13 @@ TEST(ReferenceStatistics, the_chi_square_finds_a_sampler_that_is_slightly_wrong)
     Bsdf drawn_from = said;
     drawn_from.alpha = 0.53;
     const dvec3 wo = at_angle(0.9);
-    const double p = chi_square(Bins(wo), [&]() -> std::optional<dvec3> {
-        const auto drawn = sample(drawn_from, wo, {random.uniform(), random.uniform(), random.uniform()});
-        return drawn ? std::optional(drawn->wi) : std::nullopt;
-    }, [&](const dvec3& wi) { return pdf(said, wo, wi); });
+    const double p = chi_square(
+        Bins(wo),
+        [&]() -> std::optional<dvec3> {
+            const auto drawn = sample(drawn_from, wo, {random.uniform(), random.uniform(), random.uniform()});
+            return drawn ? std::optional(drawn->wi) : std::nullopt;
+        },
+        [&](const dvec3& wi) { return pdf(said, wo, wi); });
     EXPECT_LT(p, 1e-6);
 }
 
@@ -162,12 +188,15 @@ TEST(ReferenceStatistics, S23_environment_draws_follow_their_density)
     auto map = std::make_shared<Image>(24, 12, 3);
     for (int y = 0; y < 12; ++y)
         for (int x = 0; x < 24; ++x)
-            for (int c = 0; c < 3; ++c) map->at(x, y, c) = static_cast<float>(1 + (x * 5 + y * 3) % 7 + (x == 7 && y == 4 ? 200 : 0));
+            for (int c = 0; c < 3; ++c)
+                map->at(x, y, c) = static_cast<float>(1 + (x * 5 + y * 3) % 7 + (x == 7 && y == 4 ? 200 : 0));
     const EnvironmentSampler sampler({.radiance = dvec3(0), .map = map, .rotation = 1.1, .scale = 1});
     Random random(73);
-    // Texels are constant in density, bins are not aligned with them: their quadrature errs by less than a tenth of the noise.
-    const double p = chi_square(Bins(at_angle(0.4)), [&]() -> std::optional<dvec3> { return sampler.sample(random.square()).direction; },
-                                [&](const dvec3& w) { return sampler.pdf(w); });
+    // Texels are constant in density, bins are not aligned with them: their quadrature errs by less than a tenth of the
+    // noise.
+    const double p = chi_square(
+        Bins(at_angle(0.4)), [&]() -> std::optional<dvec3> { return sampler.sample(random.square()).direction; },
+        [&](const dvec3& w) { return sampler.pdf(w); });
     EXPECT_GT(p, level());
 }
 
@@ -229,8 +258,10 @@ TEST(ReferenceStatistics, M8_Russian_roulette_changes_the_noise_but_not_the_mean
 {
     for (const char* name : {"cornell", "glass", "furnace"}) {
         const Scene scene = make_builtin(name);
-        const Estimate with = picture(scene, {.spp = 48, .seed = 3, .max_depth = 12, .russian_roulette = true}, {32, 32});
-        const Estimate without = picture(scene, {.spp = 48, .seed = 4, .max_depth = 12, .russian_roulette = false}, {32, 32});
+        const Estimate with =
+            picture(scene, {.spp = 48, .seed = 3, .max_depth = 12, .russian_roulette = true}, {32, 32});
+        const Estimate without =
+            picture(scene, {.spp = 48, .seed = 4, .max_depth = 12, .russian_roulette = false}, {32, 32});
         EXPECT_TRUE(agree(with.mean, with.variance, without.mean, without.variance)) << name;
     }
 }
@@ -258,7 +289,8 @@ Scene floor_under(const std::function<void(SceneBuilder&)>& light)
     SceneBuilder builder("floor");
     builder.show("floor", make_rectangle(dvec3(0), {0, 0, 0.5}, {0.5, 0, 0}), builder.lambert("white", dvec3(1)));
     light(builder);
-    builder.camera(Camera{.orthographic = true, .xmag = 1e-4, .ymag = 1e-4}, translation({0, 0.5, 0}) * rotation_x(-kPi / 2));
+    builder.camera(Camera{.orthographic = true, .xmag = 1e-4, .ymag = 1e-4},
+                   translation({0, 0.5, 0}) * rotation_x(-kPi / 2));
     return std::move(builder).finish();
 }
 
@@ -305,7 +337,8 @@ TEST(ReferenceStatistics, a_light_that_is_one_percent_too_bright_is_found)
 TEST(ReferenceStatistics, SH_6_a_blended_pane_lets_its_share_of_the_light_through)
 {
     for (const double alpha : {0.25, 0.8}) {
-        // Two panes of unlit colour 1 before a sky of 3: 1 - (1-α)² of the pane, the rest sky; sphere shells count twice as well.
+        // Two panes of unlit colour 1 before a sky of 3: 1 - (1-α)² of the pane, the rest sky; sphere shells count
+        // twice as well.
         const auto scene = [&](bool sphere) {
             SceneBuilder b("pane");
             Material m;
@@ -314,8 +347,10 @@ TEST(ReferenceStatistics, SH_6_a_blended_pane_lets_its_share_of_the_light_throug
             m.double_sided = true;
             m.base_color = dvec4(1, 1, 1, alpha);
             const Index pane = b.material(m);
-            if (sphere) b.sphere("shell", dvec3(0), 2, pane);
-            else for (const double z : {0.0, 1.0}) b.show("pane", make_rectangle({0, 0, z}, {2, 0, 0}, {0, 2, 0}), pane);
+            if (sphere)
+                b.sphere("shell", dvec3(0), 2, pane);
+            else
+                for (const double z : {0.0, 1.0}) b.show("pane", make_rectangle({0, 0, z}, {2, 0, 0}, {0, 2, 0}), pane);
             b.environment({.radiance = dvec3(3)});
             b.camera("camera", 10, {0, 0, 5}, dvec3(0));
             return std::move(b).finish();
@@ -340,7 +375,8 @@ TEST(ReferenceStatistics, SH_6_shadows_of_blended_and_masked_panes_are_their_opa
         });
     };
     const double free = 10 / 20.0 * 2 / std::sqrt(20.0);
-    EXPECT_NEAR(picture(floor_behind(AlphaMode::blend, 0.25), {.spp = 8, .max_depth = 2}, {4, 4}).mean, 0.75 * free, 1e-4);
+    EXPECT_NEAR(picture(floor_behind(AlphaMode::blend, 0.25), {.spp = 8, .max_depth = 2}, {4, 4}).mean, 0.75 * free,
+                1e-4);
     EXPECT_NEAR(picture(floor_behind(AlphaMode::mask, 0.25), {.spp = 8, .max_depth = 2}, {4, 4}).mean, free, 1e-4);
     EXPECT_EQ(picture(floor_behind(AlphaMode::mask, 0.75), {.spp = 8, .max_depth = 2}, {4, 4}).mean, 0);
     EXPECT_EQ(picture(floor_behind(AlphaMode::opaque, 0.75), {.spp = 8, .max_depth = 2}, {4, 4}).mean, 0);

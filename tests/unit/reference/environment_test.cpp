@@ -13,7 +13,8 @@ namespace {
 
 using test::Random;
 
-Environment map_environment(int width, int height, const std::function<double(int, int)>& value, double rotation = 0, double scale = 1)
+Environment map_environment(int width, int height, const std::function<double(int, int)>& value, double rotation = 0,
+                            double scale = 1)
 {
     auto map = std::make_shared<Image>(width, height, 3);
     for (int y = 0; y < height; ++y)
@@ -54,7 +55,10 @@ TEST(Environment, SH_40_rotation_turns_the_light_about_up)
     EXPECT_NEAR(environment_radiance(map_environment(64, 32, bright, kPi / 2), {0, 0, 1}).x, 0, 1e-6);
 }
 
-double bumpy(int x, int y) { return 0.2 + (x * 7 + y * 13) % 11 + (x == 5 && y == 3 ? 500 : 0); }
+double bumpy(int x, int y)
+{
+    return 0.2 + (x * 7 + y * 13) % 11 + (x == 5 && y == 3 ? 500 : 0);
+}
 
 TEST(Environment, S23_sampling_is_normalized_and_says_its_own_density)
 {
@@ -63,7 +67,8 @@ TEST(Environment, S23_sampling_is_normalized_and_says_its_own_density)
     constexpr int kRings = 400, kSectors = 800;
     for (int i = 0; i < kRings; ++i)
         for (int j = 0; j < kSectors; ++j) {
-            const double z = -1 + 2 * (i + 0.5) / kRings, phi = 2 * kPi * (j + 0.5) / kSectors, r = std::sqrt(1 - z * z);
+            const double z = -1 + 2 * (i + 0.5) / kRings, phi = 2 * kPi * (j + 0.5) / kSectors,
+                         r = std::sqrt(1 - z * z);
             total += sampler.pdf({r * std::cos(phi), z, r * std::sin(phi)});
         }
     EXPECT_NEAR(total * 4 * kPi / kRings / kSectors, 1, 0.01);
@@ -84,8 +89,10 @@ TEST(Environment, S23_estimates_of_the_whole_meet_the_sum_over_texels)
     constexpr int kRings = 600, kSectors = 1200;
     for (int i = 0; i < kRings; ++i)
         for (int j = 0; j < kSectors; ++j) {
-            const double z = -1 + 2 * (i + 0.5) / kRings, phi = 2 * kPi * (j + 0.5) / kSectors, r = std::sqrt(1 - z * z);
-            by_quadrature += environment_radiance(environment, {r * std::cos(phi), z, r * std::sin(phi)}).x * 4 * kPi / kRings / kSectors;
+            const double z = -1 + 2 * (i + 0.5) / kRings, phi = 2 * kPi * (j + 0.5) / kSectors,
+                         r = std::sqrt(1 - z * z);
+            by_quadrature += environment_radiance(environment, {r * std::cos(phi), z, r * std::sin(phi)}).x * 4 * kPi /
+                             kRings / kSectors;
         }
     Random random(53);
     double sum = 0, squares = 0;
@@ -111,8 +118,9 @@ TEST(Environment, S23_a_black_map_and_a_constant_one_are_not_sampled)
 TEST(Environment, SH_35_a_constant_environment_gives_its_radiance_and_pi_times_it)
 {
     for (const bool as_map : {false, true}) {
-        const Environment environment =
-            as_map ? map_environment(32, 16, [](int, int) { return 0.5; }, 0.4, 2) : Environment{.radiance = {0.5, 1, 1.5}, .scale = 2};
+        const Environment environment = as_map ? map_environment(
+                                                     32, 16, [](int, int) { return 0.5; }, 0.4, 2)
+                                               : Environment{.radiance = {0.5, 1, 1.5}, .scale = 2};
         const EnvironmentTables tables(environment, 1);
         Random random(54);
         for (int i = 0; i < 50; ++i) {
@@ -159,7 +167,7 @@ TEST(Environment, SH_41_area_averages_keep_the_mean_of_every_row)
     for (int y = 0; y < 14; ++y)
         for (int x = 0; x < 30; ++x) all += bumpy(x, y) / (30 * 14);
     for (const dvec3& t : small.texels) kept += t.x / (7 * 4);
-    EXPECT_NEAR(kept, all, 1e-5 * all);  // float texels
+    EXPECT_NEAR(kept, all, 1e-5 * all);                           // float texels
     const RadianceMap large = area_average(environment, 60, 28);  // texels are constant squares
     for (const auto& [x, y] : {std::pair{0, 0}, {17, 5}, {59, 27}})
         EXPECT_NEAR(large.texels[std::size_t(y * 60 + x)].x, bumpy(x / 2, y / 2), 1e-5 * bumpy(x / 2, y / 2));

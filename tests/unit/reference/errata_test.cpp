@@ -1,4 +1,5 @@
-// Where the notes are wrong: for each erratum what we compute passes, and the form that the notes print fails. docs/errata.md.
+// Where the notes are wrong: for each erratum what we compute passes, and the form that the notes print fails.
+// docs/errata.md.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -16,7 +17,8 @@ namespace {
 
 using Corners = std::array<FixedPoint, 3>;
 
-/// How often the two triangles of every cell of a 16×16 grid on pixel centres cover each centre: {never, once, more often}.
+/// How often the two triangles of every cell of a 16×16 grid on pixel centres cover each centre: {never, once, more
+/// often}.
 std::array<int, 3> coverage_of_grid(const std::function<bool(const Corners&, const FixedPoint&)>& covers_sample)
 {
     std::array<int, 3> counts{};
@@ -27,7 +29,8 @@ std::array<int, 3> coverage_of_grid(const std::function<bool(const Corners&, con
             int count = 0;
             for (std::int64_t v = y - 1; v <= y; ++v)  // cells whose corners are the centres around it
                 for (std::int64_t u = x - 1; u <= x; ++u) {
-                    const FixedPoint a{256 * u + 128, 256 * v + 128}, b{a.x + 256, a.y}, c{a.x + 256, a.y + 256}, d{a.x, a.y + 256};
+                    const FixedPoint a{256 * u + 128, 256 * v + 128}, b{a.x + 256, a.y}, c{a.x + 256, a.y + 256},
+                        d{a.x, a.y + 256};
                     count += covers_sample({a, b, c}, sample) + covers_sample({a, c, d}, sample);
                 }
             ++counts[std::size_t(std::min(count, 2))];
@@ -43,15 +46,20 @@ bool covers_with(const Corners& c, const FixedPoint& p, const std::function<bool
 TEST(Errata, E1_shared_edges_need_the_top_left_rule_not_at_least_0)
 {
     EXPECT_EQ(coverage_of_grid(covers), (std::array{0, 256, 0}));
-    const auto notes = [](const Corners& c, const FixedPoint& p) { return covers_with(c, p, [](std::int64_t e) { return e >= 0; }); };
+    const auto notes = [](const Corners& c, const FixedPoint& p) {
+        return covers_with(c, p, [](std::int64_t e) { return e >= 0; });
+    };
     EXPECT_EQ(coverage_of_grid(notes), (std::array{0, 0, 256}));  // every centre drawn more than once
-    const auto strict = [](const Corners& c, const FixedPoint& p) { return covers_with(c, p, [](std::int64_t e) { return e > 0; }); };
+    const auto strict = [](const Corners& c, const FixedPoint& p) {
+        return covers_with(c, p, [](std::int64_t e) { return e > 0; });
+    };
     EXPECT_EQ(coverage_of_grid(strict), (std::array{256, 0, 0}));  // and with > 0 never
 }
 
 TEST(Errata, E2_half_the_sampling_rate_is_the_limit_not_the_highest_frequency_twice_over)
 {
-    // 0.6 of the rate lies below "twice the highest frequency present" of the notes' frequency, yet its samples are those of 0.4.
+    // 0.6 of the rate lies below "twice the highest frequency present" of the notes' frequency, yet its samples are
+    // those of 0.4.
     for (int i = 0; i < 32; ++i) EXPECT_NEAR(std::cos(2 * kPi * 0.6 * i), std::cos(2 * kPi * 0.4 * i), 1e-12);
     double difference = 0;  // below half the rate two frequencies are told apart
     for (int i = 0; i < 32; ++i) difference += std::abs(std::cos(2 * kPi * 0.4 * i) - std::cos(2 * kPi * 0.3 * i));
@@ -100,7 +108,9 @@ TEST(Errata, E4_a_quarter_turn_about_z_takes_x_to_y)
         for (int i = 0; i < 3; ++i) {
             EXPECT_NEAR(length(y[i] - rotation({0, 1, 0}, angle, 1)[i]), 0, 1e-15);
             EXPECT_NEAR(length(x[i] - rotation({1, 0, 0}, angle, 1)[i]), 0, 1e-15);
-            if (i != 1) { EXPECT_GT(length(y[i] - rotation({0, 1, 0}, angle, -1)[i]), 0.1); }
+            if (i != 1) {
+                EXPECT_GT(length(y[i] - rotation({0, 1, 0}, angle, -1)[i]), 0.1);
+            }
         }
     }
 }
@@ -151,7 +161,8 @@ TEST(Errata, E7_magnified_textures_read_level_0_trilinear_or_not)
         EXPECT_EQ(sample_mips(mips, trilinear, uv, magnified), sample_mips(mips, bilinear, uv, magnified));
     }
     const double minified = mip_level({4, 0}, {0, 4}, mips.levels());  // here alone the levels act
-    EXPECT_NE(sample_mips(mips, trilinear, {0.06, 0.06}, minified), sample_mips(mips, bilinear, {0.06, 0.06}, minified));
+    EXPECT_NE(sample_mips(mips, trilinear, {0.06, 0.06}, minified),
+              sample_mips(mips, bilinear, {0.06, 0.06}, minified));
 }
 
 TEST(Errata, E8_levels_are_whole_numbers_blended_by_the_fraction)
@@ -161,12 +172,13 @@ TEST(Errata, E8_levels_are_whole_numbers_blended_by_the_fraction)
     const Sampler sampler;
     const dvec2 uv(1.0 / 16, 1.0 / 16);  // the centre of a black texel; level 1 is grey
     for (const double d : {0.25, 0.5, 0.75}) EXPECT_NEAR(sample_mips(mips, sampler, uv, d).x, 0.5 * d, 1e-15);
-    // The notes blend D and D + 1. At D = 0.75 those are 0.75 and 1.75, which no image is; taken as the next images, 1 and 2,
-    // every blend is the same grey.
+    // The notes blend D and D + 1. At D = 0.75 those are 0.75 and 1.75, which no image is; taken as the next images, 1
+    // and 2, every blend is the same grey.
     const double first = sample_mips(mips, sampler, uv, 1).x, second = sample_mips(mips, sampler, uv, 2).x;
     EXPECT_EQ(first, second);
     EXPECT_GT(std::abs(first - 0.5 * 0.75), 0.1);
-    EXPECT_EQ(sample_mips(mips, sampler, uv, 99), sample_mips(mips, sampler, uv, 3));  // nor is there one beyond the last
+    EXPECT_EQ(sample_mips(mips, sampler, uv, 99),
+              sample_mips(mips, sampler, uv, 3));  // nor is there one beyond the last
 }
 
 TEST(Errata, E10_the_first_cubic_Bernstein_weight_is_1_minus_t_cubed)
@@ -247,11 +259,13 @@ TEST(Errata, E19_chromaticity_is_of_XYZ_not_of_cone_responses)
     const auto chromaticity = [](const dvec3& v) { return dvec2(v.x, v.y) / (v.x + v.y + v.z); };
     const dvec3 equal_energy(1, 1, 1);
     EXPECT_NEAR(length(chromaticity(equal_energy) - dvec2(1.0 / 3)), 0, 1e-15);
-    // Hunt-Pointer-Estermez responses of D65, which are near (1, 1, 1), would call it equal-energy white; its XYZ does not.
+    // Hunt-Pointer-Estermez responses of D65, which are near (1, 1, 1), would call it equal-energy white; its XYZ does
+    // not.
     const dvec3 d65(0.95047, 1, 1.08883);
     EXPECT_NEAR(chromaticity(d65).x, 0.3127, 1e-4);
     EXPECT_NEAR(chromaticity(d65).y, 0.3290, 1e-4);
-    const dvec3 lms(0.4002 * d65.x + 0.7076 * d65.y - 0.0808 * d65.z, -0.2263 * d65.x + 1.1653 * d65.y + 0.0457 * d65.z, 0.9182 * d65.z);
+    const dvec3 lms(0.4002 * d65.x + 0.7076 * d65.y - 0.0808 * d65.z, -0.2263 * d65.x + 1.1653 * d65.y + 0.0457 * d65.z,
+                    0.9182 * d65.z);
     EXPECT_GT(length(chromaticity(lms) - chromaticity(d65)), 0.01);
 }
 

@@ -19,11 +19,21 @@ struct Mesh {
 Mesh icosahedron()
 {
     const double g = (1 + std::sqrt(5.0)) / 2;
-    return {.points = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g},
-                       {0, -1, -g}, {0, 1, -g}, {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}},
-            .faces = {{0, 11, 5}, {0, 5, 1}, {0, 1, 7}, {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-                      {11, 10, 2}, {10, 7, 6}, {7, 1, 8}, {3, 9, 4}, {3, 4, 2}, {3, 2, 6}, {3, 6, 8},
-                      {3, 8, 9}, {4, 9, 5}, {2, 4, 11}, {6, 2, 10}, {8, 6, 7}, {9, 8, 1}}};
+    return {.points = {{-1, g, 0},
+                       {1, g, 0},
+                       {-1, -g, 0},
+                       {1, -g, 0},
+                       {0, -1, g},
+                       {0, 1, g},
+                       {0, -1, -g},
+                       {0, 1, -g},
+                       {g, 0, -1},
+                       {g, 0, 1},
+                       {-g, 0, -1},
+                       {-g, 0, 1}},
+            .faces = {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+                      {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+                      {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}}};
 }
 
 int hits(const Mesh& mesh, const Ray& ray)
@@ -31,7 +41,9 @@ int hits(const Mesh& mesh, const Ray& ray)
     const ShearedRay sheared(ray);
     int count = 0;
     for (const auto& f : mesh.faces)
-        if (intersect_triangle(sheared, mesh.points[std::size_t(f[0])], mesh.points[std::size_t(f[1])], mesh.points[std::size_t(f[2])])) ++count;
+        if (intersect_triangle(sheared, mesh.points[std::size_t(f[0])], mesh.points[std::size_t(f[1])],
+                               mesh.points[std::size_t(f[2])]))
+            ++count;
     return count;
 }
 
@@ -46,7 +58,8 @@ TEST(Intersect, G10_no_ray_from_inside_a_closed_mesh_leaks_through_edges_or_vert
             const dvec3 a = mesh.points[std::size_t(f[0])], b = mesh.points[std::size_t(f[1])];
             const dvec3 target = i % 3 == 0 ? a : a + random.uniform() * (b - a);
             const dvec3 origin = dvec3(offset, -2 * offset, offset / 3) + random.box(0.3);
-            ASSERT_GE(hits(mesh, {.origin = origin, .direction = target - origin}), 1) << "ray " << i << " offset " << offset;
+            ASSERT_GE(hits(mesh, {.origin = origin, .direction = target - origin}), 1)
+                << "ray " << i << " offset " << offset;
         }
     }
 }
@@ -74,11 +87,15 @@ TEST(Intersect, G13_hits_do_not_change_when_everything_is_scaled_by_a_power_of_t
     Random random(3);
     for (const double scale : {0x1p-40, 0x1p-20, 0x1p20, 0x1p40})
         for (int i = 0; i < 2000; ++i) {
-            const dvec3 p0 = random.box(1), p1 = random.box(1), p2 = random.box(1), o = random.box(1), d = random.direction();
+            const dvec3 p0 = random.box(1), p1 = random.box(1), p2 = random.box(1), o = random.box(1),
+                        d = random.direction();
             const auto one = intersect_triangle(ShearedRay({.origin = o, .direction = d}), p0, p1, p2);
-            const auto other = intersect_triangle(ShearedRay({.origin = scale * o, .direction = d}), scale * p0, scale * p1, scale * p2);
+            const auto other = intersect_triangle(ShearedRay({.origin = scale * o, .direction = d}), scale * p0,
+                                                  scale * p1, scale * p2);
             ASSERT_EQ(one.has_value(), other.has_value());
-            if (one) { EXPECT_EQ(one->t * scale, other->t); }
+            if (one) {
+                EXPECT_EQ(one->t * scale, other->t);
+            }
         }
 }
 
@@ -112,10 +129,12 @@ TEST(Intersect, G15_a_huge_ground_sphere_is_met_at_the_height_of_the_eye)
     const SphereHits hits = intersect_sphere({.origin = {0, 2, 0}, .direction = {0, -1, 0}}, {0, -r, 0}, r);
     ASSERT_EQ(hits.count, 2);
     EXPECT_NEAR(hits.t[0], 2, 1e-12);
-    // The horizon dips by acos(r / (r + h)); a hair below it the ground is met near the tangent's length, above it never.
+    // The horizon dips by acos(r / (r + h)); a hair below it the ground is met near the tangent's length, above it
+    // never.
     const double dip = std::acos(r / (r + 2)), tangent = std::sqrt(2 * (2 * r + 2));
     const auto look = [&](double angle) {
-        return intersect_sphere({.origin = {0, 2, 0}, .direction = {std::cos(angle), -std::sin(angle), 0}}, {0, -r, 0}, r);
+        return intersect_sphere({.origin = {0, 2, 0}, .direction = {std::cos(angle), -std::sin(angle), 0}}, {0, -r, 0},
+                                r);
     };
     EXPECT_EQ(look(dip * (1 - 1e-6)).count, 0);
     ASSERT_EQ(look(dip * (1 + 1e-6)).count, 2);
@@ -144,7 +163,8 @@ TEST(Intersect, G23_rays_that_leave_a_triangle_do_not_meet_it_again_at_any_scale
             const dvec3 d = random.direction();
             const dvec3 origin = offset_origin(x0 + x1 + x2, error, n, d);
             EXPECT_LT(length(origin - (x0 + x1 + x2)), 1e-13 * scale);
-            ASSERT_FALSE(intersect_triangle(ShearedRay({.origin = origin, .direction = d}), p0, p1, p2)) << i << " at scale " << scale;
+            ASSERT_FALSE(intersect_triangle(ShearedRay({.origin = origin, .direction = d}), p0, p1, p2))
+                << i << " at scale " << scale;
         }
 }
 

@@ -52,8 +52,12 @@ TEST(Light, SH_22_point_light_falls_off_with_the_square_and_window_of_its_range)
 
 TEST(Light, SH_22_a_spot_has_its_cone_and_a_directional_light_no_distance)
 {
-    PosedLight spot{.light = {.type = LightType::spot, .intensity = 4, .inner_cone = 0.2, .outer_cone = 0.4}, .position = dvec3(0), .direction = {0, 0, -1}};
-    const auto at = [&](double angle) { return incident(spot, 2.0 * dvec3(std::sin(angle), 0, -std::cos(angle))).irradiance.x; };
+    PosedLight spot{.light = {.type = LightType::spot, .intensity = 4, .inner_cone = 0.2, .outer_cone = 0.4},
+                    .position = dvec3(0),
+                    .direction = {0, 0, -1}};
+    const auto at = [&](double angle) {
+        return incident(spot, 2.0 * dvec3(std::sin(angle), 0, -std::cos(angle))).irradiance.x;
+    };
     EXPECT_NEAR(at(0), 1, 1e-15);
     EXPECT_NEAR(at(0.19), 1, 1e-15);
     EXPECT_EQ(at(0.41), 0);
@@ -75,7 +79,8 @@ double irradiance_by_samples(const AreaLights& lights, const dvec3& p, const dve
     for (int i = 0; i < draws; ++i) {
         const double pick = random.uniform();
         double x = 0;
-        if (const auto s = lights.sample(p, pick, random.square())) x = s->radiance.x * std::max(0.0, dot(n, s->wi)) / s->pdf;
+        if (const auto s = lights.sample(p, pick, random.square()))
+            x = s->radiance.x * std::max(0.0, dot(n, s->wi)) / s->pdf;
         sum += x;
         squares += x * x;
     }
@@ -88,11 +93,14 @@ TEST(Light, a_rectangle_light_gives_its_form_factor)
 {
     // Seen from below its corner at height h, sides a, b (Howell's catalogue, C-11): exact.
     const auto scene = lit([](SceneBuilder& b) {
-        b.show("light", make_rectangle({1, 2, 1.5}, {1, 0, 0}, {0, 0, 1.5}), b.material(emitter(3)));  // normal: x × z = -y
+        b.show("light", make_rectangle({1, 2, 1.5}, {1, 0, 0}, {0, 0, 1.5}),
+               b.material(emitter(3)));  // normal: x × z = -y
     });
     const AreaLights lights(scene->world);
     const double a = 2 / 2.0, b = 3 / 2.0;
-    const double factor = (a / std::sqrt(1 + a * a) * std::atan(b / std::sqrt(1 + a * a)) + b / std::sqrt(1 + b * b) * std::atan(a / std::sqrt(1 + b * b))) / (2 * kPi);
+    const double factor = (a / std::sqrt(1 + a * a) * std::atan(b / std::sqrt(1 + a * a)) +
+                           b / std::sqrt(1 + b * b) * std::atan(a / std::sqrt(1 + b * b))) /
+                          (2 * kPi);
     double error;
     const double found = irradiance_by_samples(lights, {0, 0, 0}, {0, 1, 0}, 40000, error);
     EXPECT_NEAR(found, 3 * kPi * factor, 5 * error);
@@ -102,7 +110,9 @@ TEST(Light, a_rectangle_light_gives_its_form_factor)
 TEST(Light, S19_a_sphere_light_gives_its_form_factor_from_near_and_far)
 {
     for (const double distance : {1.01, 3.0, 1e3, 1e6}) {
-        const auto scene = lit([&](SceneBuilder& b) { b.sphere("light", {0, distance, 0}, 1, b.material(emitter(2))); });
+        const auto scene = lit([&](SceneBuilder& b) {
+            b.sphere("light", {0, distance, 0}, 1, b.material(emitter(2)));
+        });
         const AreaLights lights(scene->world);
         double error;
         const double found = irradiance_by_samples(lights, dvec3(0), {0, 1, 0}, 20000, error);
@@ -164,7 +174,8 @@ TEST(Light, S20_emitters_without_area_or_light_are_no_lights)
 TEST(Light, S25_MIS_weights_add_to_one_however_large_the_densities)
 {
     for (const double p : {1e-300, 1e-25, 1.0, 1e38, 1e300})
-        for (const double q : {1e-300, 1e-25, 1.0, 1e38, 1e300}) EXPECT_NEAR(power_heuristic(p, q) + power_heuristic(q, p), 1, 1e-15);
+        for (const double q : {1e-300, 1e-25, 1.0, 1e38, 1e300})
+            EXPECT_NEAR(power_heuristic(p, q) + power_heuristic(q, p), 1, 1e-15);
     EXPECT_EQ(power_heuristic(0, 1), 0);
     EXPECT_EQ(power_heuristic(1, 0), 1);
     EXPECT_EQ(power_heuristic(0, 0), 0);

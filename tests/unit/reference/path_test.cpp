@@ -13,7 +13,8 @@
 namespace etalon::reference {
 namespace {
 
-Film render(const Scene& scene, RenderSettings settings, ivec2 size, const Progress& progress = {}, const Environment* environment = nullptr)
+Film render(const Scene& scene, RenderSettings settings, ivec2 size, const Progress& progress = {},
+            const Environment* environment = nullptr)
 {
     PoseSettings pose_settings;
     pose_settings.size = size;
@@ -30,7 +31,10 @@ Scene built(const std::function<void(SceneBuilder&)>& fill)
     return std::move(builder).finish();
 }
 
-const vec3& at(const Film& film, int x, int y) { return film.mean[std::size_t(y) * std::size_t(film.width) + std::size_t(x)]; }
+const vec3& at(const Film& film, int x, int y)
+{
+    return film.mean[std::size_t(y) * std::size_t(film.width) + std::size_t(x)];
+}
 
 TEST(ReferencePath, R22_a_white_sphere_in_a_white_furnace_cannot_be_seen)
 {
@@ -77,13 +81,15 @@ TEST(ReferencePath, a_point_light_gives_the_plane_below_the_inverse_square_and_t
                 expected += 0.5 / kPi * 30 / d2 * (to_light.y / std::sqrt(d2)) / 64;
             }
             const std::size_t i = std::size_t(y) * 16 + std::size_t(x);
-            EXPECT_NEAR(at(film, x, y).x, expected, 6 * std::sqrt(film.variance[i].x) + 1e-3 * expected) << x << " " << y;
+            EXPECT_NEAR(at(film, x, y).x, expected, 6 * std::sqrt(film.variance[i].x) + 1e-3 * expected)
+                << x << " " << y;
         }
 }
 
 TEST(ReferencePath, SH_20_depth_counts_segments_from_the_camera_to_the_light)
 {
-    // One white wall lit by a sky: 1 shows emission alone, 2 the wall. A closed grey room with a glowing wall goes on further.
+    // One white wall lit by a sky: 1 shows emission alone, 2 the wall. A closed grey room with a glowing wall goes on
+    // further.
     const Scene wall = built([](SceneBuilder& b) {
         b.show("wall", make_rectangle(dvec3(0), {1, 0, 0}, {0, 1, 0}), b.lambert("white", dvec3(1)));
         b.environment({.radiance = dvec3(1)});
@@ -148,7 +154,8 @@ TEST(ReferencePath, a_stopped_picture_keeps_whole_passes_and_equals_a_shorter_on
 {
     const Scene scene = make_builtin("cornell");
     std::atomic<bool> stop = false;
-    const Progress progress([&](const ProgressUpdate& update) { stop = stop || update.samples.value_or(0) >= 3; }, &stop);
+    const Progress progress([&](const ProgressUpdate& update) { stop = stop || update.samples.value_or(0) >= 3; },
+                            &stop);
     const Film stopped = render(scene, {.spp = 1000000, .threads = 2}, {24, 24}, progress);
     EXPECT_GE(stopped.samples, 3u);
     EXPECT_LT(stopped.samples, 1000u);
@@ -169,13 +176,15 @@ TEST(ReferencePath, progress_tells_samples_fraction_and_error_from_the_second_sa
 {
     double last_fraction = 0;
     std::uint64_t last_samples = 0;
-    const Progress progress([&](const ProgressUpdate& update) {
-        if (!update.samples) return;
-        EXPECT_GT(*update.samples, last_samples);
-        last_samples = *update.samples;
-        last_fraction = update.fraction;
-        EXPECT_EQ(update.error.has_value(), *update.samples > 1);
-    }, nullptr);
+    const Progress progress(
+        [&](const ProgressUpdate& update) {
+            if (!update.samples) return;
+            EXPECT_GT(*update.samples, last_samples);
+            last_samples = *update.samples;
+            last_fraction = update.fraction;
+            EXPECT_EQ(update.error.has_value(), *update.samples > 1);
+        },
+        nullptr);
     render(make_builtin("cornell"), {.spp = 5}, {16, 16}, progress);
     EXPECT_EQ(last_samples, 5u);
     EXPECT_EQ(last_fraction, 1);
@@ -201,7 +210,8 @@ TEST(ReferencePath, SH_23_the_background_is_what_was_asked_for)
     EXPECT_EQ(clear.alpha[0], 0);
     EXPECT_EQ(clear.alpha[8 * 16 + 8], 1);
     EXPECT_EQ(at(clear, 8, 8), vec3(1.5));  // still lit by it
-    const Film blue = render(scene, {.background = Background::colour, .background_color = {0, 0, 1}, .spp = 2}, {16, 16});
+    const Film blue =
+        render(scene, {.background = Background::colour, .background_color = {0, 0, 1}, .spp = 2}, {16, 16});
     EXPECT_EQ(at(blue, 0, 0), vec3(0, 0, 1));
     EXPECT_EQ(blue.alpha[0], 1);
 }
@@ -224,7 +234,9 @@ TEST(ReferencePath, SH_6_backs_and_masked_parts_are_passed_and_exact_backs_are_b
         });
     };
     const auto color = [](const Scene& scene) { return at(render(scene, {.spp = 4, .max_depth = 2}, {4, 4}), 2, 2); };
-    const auto with = [](Material m) { return [m](SceneBuilder& b, const Primitive& p) { b.show("pane", p, b.material(m)); }; };
+    const auto with = [](Material m) {
+        return [m](SceneBuilder& b, const Primitive& p) { b.show("pane", p, b.material(m)); };
+    };
     Material unlit = glTF_material({1, 0.5, 0.25, 1});
     EXPECT_EQ(color(picture(with(unlit), true)), vec3(1, 0.5, 0.25));
     EXPECT_EQ(color(picture(with(unlit), false)), vec3(5));  // culled
@@ -287,7 +299,8 @@ TEST(ReferencePath, R1_scaling_the_scene_by_a_power_of_two_changes_no_bit)
     const auto scaled = [](double s) {
         return built([&](SceneBuilder& b) {
             b.show("floor", make_rectangle(dvec3(0), {0, 0, 4 * s}, {4 * s, 0, 0}), b.lambert("white", dvec3(0.8)));
-            b.show("box", make_box({0.3 * s, 0.5 * s, 0}, dvec3(0.5 * s)), b.metallic_roughness("gold", {1, 0.8, 0.3}, 1, 0.4));
+            b.show("box", make_box({0.3 * s, 0.5 * s, 0}, dvec3(0.5 * s)),
+                   b.metallic_roughness("gold", {1, 0.8, 0.3}, 1, 0.4));
             Material glow;
             glow.emission = dvec3(4);
             glow.model = BsdfModel::lambert;

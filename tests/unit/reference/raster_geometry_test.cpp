@@ -15,14 +15,16 @@ using test::Random;
 
 FixedPoint random_point(Random& random, double half)
 {
-    return {static_cast<std::int64_t>(random.uniform(-half, half)), static_cast<std::int64_t>(random.uniform(-half, half))};
+    return {static_cast<std::int64_t>(random.uniform(-half, half)),
+            static_cast<std::int64_t>(random.uniform(-half, half))};
 }
 
 TEST(RasterGeometry, G1_the_edge_function_changes_its_sign_with_its_direction)
 {
     Random random(41);
     for (int i = 0; i < 100000; ++i) {
-        const FixedPoint a = random_point(random, 1 << 28), b = random_point(random, 1 << 28), p = random_point(random, 1 << 28);
+        const FixedPoint a = random_point(random, 1 << 28), b = random_point(random, 1 << 28),
+                         p = random_point(random, 1 << 28);
         ASSERT_EQ(edge(a, b, p), -edge(b, a, p));
     }
 }
@@ -33,7 +35,8 @@ TEST(RasterGeometry, G2_edges_are_exact_for_the_largest_pictures)
 {
     Random random(42);
     for (int i = 0; i < 10000; ++i) {
-        const FixedPoint a = random_point(random, 1 << 28), b = random_point(random, 1 << 28), p = random_point(random, 1 << 28);
+        const FixedPoint a = random_point(random, 1 << 28), b = random_point(random, 1 << 28),
+                         p = random_point(random, 1 << 28);
         const auto wide = static_cast<Wide>(a.x - p.x) * (b.y - p.y) - static_cast<Wide>(a.y - p.y) * (b.x - p.x);
         ASSERT_TRUE(wide == edge(a, b, p));
     }
@@ -79,8 +82,10 @@ TEST(RasterGeometry, G3_a_tiling_covers_every_sample_once_even_through_sample_po
             std::vector<std::array<FixedPoint, 3>> triangles{{a, b, c}, {a, c, d}};
             if ((cut && b_d) || !a_c) triangles = {{a, b, d}, {b, c, d}};
             for (const auto& triangle : triangles)
-                for (std::int64_t py = static_cast<std::int64_t>(y) * 256 - 160; py < static_cast<std::int64_t>(y + 2) * 256; py += 32)
-                    for (std::int64_t px = static_cast<std::int64_t>(x) * 256 - 160; px < static_cast<std::int64_t>(x + 2) * 256; px += 32) {
+                for (std::int64_t py = static_cast<std::int64_t>(y) * 256 - 160;
+                     py < static_cast<std::int64_t>(y + 2) * 256; py += 32)
+                    for (std::int64_t px = static_cast<std::int64_t>(x) * 256 - 160;
+                         px < static_cast<std::int64_t>(x + 2) * 256; px += 32) {
                         const FixedPoint p{px, py};
                         if (covers(triangle, p)) ++count[{px, py}];
                         for (std::size_t e = 0; e < 3; ++e) ties += edge(triangle[e], triangle[(e + 1) % 3], p) == 0;
@@ -91,7 +96,8 @@ TEST(RasterGeometry, G3_a_tiling_covers_every_sample_once_even_through_sample_po
     for (std::int64_t py = 0; py < kCells * 256; py += 32)
         for (std::int64_t px = 0; px < kCells * 256; px += 32, ++checked) {
             const auto found = count.find({px, py});
-            ASSERT_TRUE(found != count.end() && found->second == 1) << px << " " << py << ": " << (found == count.end() ? 0 : found->second);
+            ASSERT_TRUE(found != count.end() && found->second == 1)
+                << px << " " << py << ": " << (found == count.end() ? 0 : found->second);
         }
     EXPECT_EQ(checked, kCells * kCells * 64);
 }
@@ -155,10 +161,12 @@ TEST(RasterGeometry, G5_interpolation_meets_where_the_ray_meets_the_plane)
         for (const Piece& piece : t.pieces) {
             const dvec2 pixel(random.uniform(0, 64), random.uniform(0, 48));
             const auto at = interpolate(piece, pixel);
-            const auto hit = intersect_triangle(ShearedRay(camera.pinhole(pixel)), t.corner(0), t.corner(1), t.corner(2));
+            const auto hit =
+                intersect_triangle(ShearedRay(camera.pinhole(pixel)), t.corner(0), t.corner(1), t.corner(2));
             if (!hit) continue;
             ASSERT_TRUE(at.valid);
-            // Turned triangles have swapped corners but the same b; the film's rounding is magnified by the spread of w.
+            // Turned triangles have swapped corners but the same b; the film's rounding is magnified by the spread of
+            // w.
             EXPECT_NEAR(at.b.x, hit->b1, 1e-9);
             EXPECT_NEAR(at.b.y, hit->b2, 1e-9);
             const double depth = camera.depth(camera.pinhole(pixel).origin + hit->t * camera.pinhole(pixel).direction);
@@ -176,8 +184,12 @@ TEST(RasterGeometry, G5_a_constant_stays_constant_and_derivatives_meet_differenc
     for (const dvec2 pixel : {dvec2(40, 50), dvec2(60, 60), dvec2(45, 40)}) {
         const auto at = interpolate(t.pieces[0], pixel);
         constexpr double kStep = 1e-5;
-        const dvec2 dx = (interpolate(t.pieces[0], pixel + dvec2(kStep, 0)).b - interpolate(t.pieces[0], pixel - dvec2(kStep, 0)).b) / (2 * kStep);
-        const dvec2 dy = (interpolate(t.pieces[0], pixel + dvec2(0, kStep)).b - interpolate(t.pieces[0], pixel - dvec2(0, kStep)).b) / (2 * kStep);
+        const dvec2 dx = (interpolate(t.pieces[0], pixel + dvec2(kStep, 0)).b -
+                          interpolate(t.pieces[0], pixel - dvec2(kStep, 0)).b) /
+                         (2 * kStep);
+        const dvec2 dy = (interpolate(t.pieces[0], pixel + dvec2(0, kStep)).b -
+                          interpolate(t.pieces[0], pixel - dvec2(0, kStep)).b) /
+                         (2 * kStep);
         EXPECT_NEAR(length(at.b_dx - dx), 0, 1e-9);
         EXPECT_NEAR(length(at.b_dy - dy), 0, 1e-9);
         Piece flat = t.pieces[0];
@@ -203,7 +215,8 @@ TEST(RasterGeometry, G6_triangles_behind_the_eye_give_nothing_and_those_through_
 
 TEST(RasterGeometry, G6_neighbours_cut_by_the_near_plane_share_the_same_cut)
 {
-    const std::array<ClipVertex, 3> one{{{{-1, 0, 0.5, 2}, {0, 0}}, {{1, 0.3, 0.5, 0.1}, {1, 0}}, {{0, 1, 0.5, 1.7}, {0, 1}}}};
+    const std::array<ClipVertex, 3> one{
+        {{{-1, 0, 0.5, 2}, {0, 0}}, {{1, 0.3, 0.5, 0.1}, {1, 0}}, {{0, 1, 0.5, 1.7}, {0, 1}}}};
     const std::array<ClipVertex, 3> other{{one[1], one[0], {{0, -1, 0.5, 1.9}, {0, 1}}}};
     const auto a = clip(one, dvec2(1e6)), b = clip(other, dvec2(1e6));
     ASSERT_EQ(a.size(), 4u);

@@ -31,7 +31,8 @@ TEST(RasterShade, S2_Blinn_Phong_keeps_its_energy_head_on_for_every_exponent)
 {
     for (const double p : {0.0, 1.0, 10.0, 1e3, 1e6}) {
         // Seen head on h lies half way: |n - h| = 2 sin(θ/4).
-        const double albedo = hemisphere([&](double theta) { return blinn_phong_lobe(p, 2 * std::sin(theta / 4)) * std::cos(theta); });
+        const double albedo =
+            hemisphere([&](double theta) { return blinn_phong_lobe(p, 2 * std::sin(theta / 4)) * std::cos(theta); });
         EXPECT_NEAR(albedo, 1, 1e-5) << p;
     }
 }
@@ -41,10 +42,11 @@ TEST(RasterShade, S1_Blinn_Phong_keeps_its_digits_at_the_largest_exponent)
     const double p = 1e6;
     for (const double angle : {1e-6, 1e-4, 1e-3, 3e-3}) {
         const long double c = std::cos(static_cast<long double>(angle));
-        const double truth = static_cast<double>((static_cast<long double>(p) + 2) * (p + 4) / (8 * kPi * p) * std::pow(c, static_cast<long double>(p)));
+        const double truth = static_cast<double>((static_cast<long double>(p) + 2) * (p + 4) / (8 * kPi * p) *
+                                                 std::pow(c, static_cast<long double>(p)));
         EXPECT_NEAR(blinn_phong_lobe(p, 2 * std::sin(angle / 2)) / truth, 1, 1e-9) << angle;
     }
-    EXPECT_GT(blinn_phong_lobe(0, 1.2), 0);           // anything to the power 0 is 1
+    EXPECT_GT(blinn_phong_lobe(0, 1.2), 0);                         // anything to the power 0 is 1
     EXPECT_EQ(blinn_phong_lobe(5, std::sqrt(2.0) * 1.0000001), 0);  // n·h = 0
 }
 
@@ -61,7 +63,10 @@ TEST(RasterShade, SH_14_the_rasterizers_formula_is_the_path_tracers)
 {
     for (const double alpha : {0.05, 0.5, 1.0})
         for (const double theta : {0.1, 0.8, 1.5}) {
-            const Bsdf bsdf{.model = BsdfModel::metallic_roughness, .color = {0.5, 0.2, 0.1}, .f0 = {0.04, 0.3, 0.9}, .alpha = alpha};
+            const Bsdf bsdf{.model = BsdfModel::metallic_roughness,
+                            .color = {0.5, 0.2, 0.1},
+                            .f0 = {0.04, 0.3, 0.9},
+                            .alpha = alpha};
             const RasterMaterial m{.diffuse = bsdf.color, .f0 = bsdf.f0, .roughness = std::sqrt(alpha), .alpha = alpha};
             const dvec3 wo = at_angle(0.6, 0.2), wi = at_angle(theta, 2.5);
             const dvec3 expected = evaluate(bsdf, wo, wi), value = reflect_pbr(m, kUp, wo, wi, wo.z);
@@ -74,14 +79,18 @@ TEST(RasterShade, SH_34_the_split_sum_is_near_the_albedo_it_stands_for)
     // Karis 2014's fit is meant for the eye and for another masking term: up to a fifth too dark at middle roughness.
     for (const double roughness : {0.4, 0.7, 1.0})
         for (const double theta : {0.2, 0.8}) {
-            const Bsdf white{.model = BsdfModel::metallic_roughness, .color = dvec3(0), .f0 = dvec3(1), .alpha = roughness * roughness};
+            const Bsdf white{.model = BsdfModel::metallic_roughness,
+                             .color = dvec3(0),
+                             .f0 = dvec3(1),
+                             .alpha = roughness * roughness};
             const dvec3 wo = at_angle(theta);
             double albedo = 0;
             constexpr int kSteps = 300;
             for (int i = 0; i < kSteps; ++i)
                 for (int j = 0; j < kSteps; ++j) {
                     const double z = (i + 0.5) / kSteps, phi = 2 * kPi * (j + 0.5) / kSteps, r = std::sqrt(1 - z * z);
-                    albedo += evaluate(white, wo, {r * std::cos(phi), r * std::sin(phi), z}).x * 2 * kPi / kSteps / kSteps;
+                    albedo +=
+                        evaluate(white, wo, {r * std::cos(phi), r * std::sin(phi), z}).x * 2 * kPi / kSteps / kSteps;
                 }
             const dvec2 ab = specular_scale_bias(roughness, wo.z);
             EXPECT_NEAR(ab.x + ab.y, albedo, 0.2) << roughness << " at " << theta;

@@ -37,7 +37,10 @@ Material unlit(dvec4 color, AlphaMode mode = AlphaMode::opaque)
     return m;
 }
 
-const vec3& at(const Film& film, int x, int y) { return film.mean[std::size_t(y) * std::size_t(film.width) + std::size_t(x)]; }
+const vec3& at(const Film& film, int x, int y)
+{
+    return film.mean[std::size_t(y) * std::size_t(film.width) + std::size_t(x)];
+}
 
 /// A camera that sees `width` × `height` units, one a pixel, of the plane z = 0; (0, 0) is the top left corner.
 void pixel_camera(SceneBuilder& b, double width, double height)
@@ -53,7 +56,8 @@ TEST(ReferenceRaster, G3_a_closed_tiling_blended_over_nothing_covers_every_sampl
     const Scene scene = built([](SceneBuilder& b) {
         Primitive sheet;
         for (int y = 0; y <= 8; ++y)
-            for (int x = 0; x <= 8; ++x) sheet.positions.emplace_back(2 * x + (y % 3) * 0.125, -2 * y - (x % 4) * 0.0625, 0);
+            for (int x = 0; x <= 8; ++x)
+                sheet.positions.emplace_back(2 * x + (y % 3) * 0.125, -2 * y - (x % 4) * 0.0625, 0);
         for (std::uint32_t y = 0; y < 8; ++y)
             for (std::uint32_t x = 0; x < 8; ++x) {
                 const std::uint32_t a = y * 9 + x;
@@ -137,7 +141,9 @@ TEST(ReferenceRaster, T2_a_texel_a_pixel_reads_level_0_and_two_read_level_1)
             EXPECT_NEAR(at(film, 2, 2).x, 0.5, 1e-5);
         }
         const Film without = render(scene, {.msaa = 1, .mipmaps = false}, {16, 16});
-        if (texels_per_pixel == 4) { EXPECT_NEAR(at(without, 1, 1).x, 0.5, 1e-5); }  // between two texels of level 0
+        if (texels_per_pixel == 4) {
+            EXPECT_NEAR(at(without, 1, 1).x, 0.5, 1e-5);
+        }  // between two texels of level 0
     }
 }
 
@@ -197,7 +203,8 @@ TEST(ReferenceRaster, SH_39_a_lamp_lights_what_it_faces_but_not_itself)
             pixel_camera(b, 16, 16);
         });
     };
-    const Film film = render(floor_below(false), {}, {16, 16});  // the lamp is behind the eye, 12 above the floor, and looks down
+    const Film film =
+        render(floor_below(false), {}, {16, 16});  // the lamp is behind the eye, 12 above the floor, and looks down
     for (int y = 0; y < 16; ++y)
         for (int x = 0; x < 16; ++x) {
             const dvec3 to_lamp = dvec3(8, -8, 12) - dvec3(x + 0.5, -y - 0.5, 0);

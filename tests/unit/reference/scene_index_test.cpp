@@ -35,7 +35,8 @@ Posed random_scene(int triangles, int spheres, double size)
     SceneBuilder builder("random");
     const Index material = builder.lambert("grey", dvec3(0.5));
     builder.show("soup", random_triangles(random, triangles, size), material);
-    builder.show("turned", random_triangles(random, triangles / 2, size), material, rotation_y(0.3) * translation({0.1, 0, 0}));
+    builder.show("turned", random_triangles(random, triangles / 2, size), material,
+                 rotation_y(0.3) * translation({0.1, 0, 0}));
     for (int i = 0; i < spheres; ++i) builder.sphere("ball", random.box(1), random.uniform(0.01, 0.2), material);
     return Posed(std::move(builder).finish());
 }
