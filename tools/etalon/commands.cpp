@@ -17,10 +17,9 @@ Command render_command()
         .name = "render",
         .summary = "Render scenes to pictures",
         .description =
-            "Renders each SCENE (a .gltf or .glb file, builtin:NAME, or - for a GLB on standard input) into a picture. "
-            "A path-traced "
-            "picture says its estimated error with a 95% interval. Ctrl-C finishes the current pass and writes what "
-            "there is.",
+            "Renders each SCENE (a .gltf or .glb file, builtin:NAME, or - for a GLB on standard input) into a "
+            "picture. A path-traced picture says its estimated error with a 95% interval. Ctrl-C finishes the "
+            "current pass and writes what there is.",
         .argument = "SCENE...",
         .least = 1,
         .most = 100'000,
@@ -29,7 +28,8 @@ Command render_command()
                .letter = 'o',
                .argument = "FILE",
                .help = "Where to: .png (developed), .exr (radiance, variance, AOVs) or - (PNG on standard output); "
-                       "{name} is the scene's name; may be repeated",
+                       "{name} is "
+                       "the scene's name; may be repeated",
                .completes = Completes::file,
                .repeats = true,
                .heading = "Output"},
@@ -70,10 +70,9 @@ Command compare_command()
         .name = "compare",
         .summary = "Render a scene with every renderer and measure how much they disagree",
         .description =
-            "Renders SCENE with the Vulkan rasterizer, the Vulkan path tracer and the CPU reference of both, compares "
-            "them (by statistics where "
-            "both sides carry variance), prints a table and writes pictures, difference pictures, report.json and "
-            "report.html.",
+            "Renders SCENE with the Vulkan rasterizer, the Vulkan path tracer and the CPU reference of both, "
+            "compares them (by statistics where both sides carry variance), prints a table and writes pictures, "
+            "difference pictures, report.json and report.html.",
         .argument = "SCENE",
         .least = 1,
         .most = 1,
@@ -116,9 +115,9 @@ Command diff_command()
         .name = "diff",
         .summary = "Compare two picture files",
         .description =
-            "Compares A with B, the one trusted more. Films (.exr written by etalon) that carry variance are compared "
-            "by a statistical test with a stated "
-            "false-alarm rate; other pictures must be equal, or within the budgets given.",
+            "Compares A with B, the one trusted more. Films (.exr written by etalon) that carry variance are "
+            "compared by a statistical test with a stated false-alarm rate; other pictures must be equal, or within "
+            "the budgets given.",
         .argument = "A B",
         .least = 2,
         .most = 2,
@@ -172,9 +171,8 @@ Command explain_command()
         .name = "explain",
         .summary = "Say what a picture of a scene requires of a renderer, and why",
         .description =
-            "Prints each requirement of SCENE under these settings with the first object that causes it. Everything a "
-            "renderer builds "
-            "(vertex attributes, textures, shader code, passes) follows from this list.",
+            "Prints each requirement of SCENE under these settings with the first object that causes it. Everything "
+            "a renderer builds (vertex attributes, textures, shader code, passes) follows from this list.",
         .argument = "SCENE",
         .least = 1,
         .most = 1,
@@ -204,10 +202,8 @@ Command info_command()
         .summary = "Say what this machine can do, or what a scene holds",
         .description =
             "Without SCENE: versions, every Vulkan device with the reasons it was or was not chosen, and a proof of "
-            "each back end (a triangle drawn "
-            "and read back under a time limit); paste it into a bug report. With SCENE: its scenes, cameras, lights, "
-            "materials, animations, "
-            "variants and the memory it will take.",
+            "each back end (a triangle drawn and read back under a time limit); paste it into a bug report. With "
+            "SCENE: its scenes, cameras, lights, materials, animations, variants and the memory it will take.",
         .argument = "[SCENE]",
         .least = 0,
         .most = 1,
@@ -233,9 +229,8 @@ Command view_command()
         .name = "view",
         .summary = "Open a scene in a window",
         .description =
-            "Opens SCENE in a window, drawn by the rasterizer or by the progressive path tracer. Which keys and mouse "
-            "moves there are is said "
-            "on standard error; Ctrl-C closes it as well.",
+            "Opens SCENE in a window, drawn by the rasterizer or by the progressive path tracer. Which keys and "
+            "mouse moves there are is said on standard error; Ctrl-C closes it as well.",
         .argument = "SCENE",
         .least = 1,
         .most = 1,
