@@ -9,16 +9,16 @@ namespace etalon {
 
 /// Where a long job stands.
 struct ProgressUpdate {
-    std::string_view stage;               ///< what is being done: "path tracing", "building the BVH"
-    double fraction = 0;                  ///< of this stage, 0 … 1
-    std::optional<double> error;          ///< relative standard error of the picture so far, where it is known
-    std::optional<std::uint64_t> samples; ///< samples per pixel done, for path tracing
+    std::string_view stage;                ///< what is being done: "path tracing", "building the BVH"
+    double fraction = 0;                   ///< of this stage, 0 … 1
+    std::optional<double> error;           ///< relative standard error of the picture so far, where it is known
+    std::optional<std::uint64_t> samples;  ///< samples per pixel done, for path tracing
 };
 
 /// How a long job tells what it does and hears that it should stop. Default constructed: silent, never stopped.
 /// `report` may be called from one thread at a time; `stopped` from any.
 class Progress {
-   public:
+ public:
     using Sink = std::function<void(const ProgressUpdate&)>;
     Progress() = default;
     /// `stop` (may be null) is set from elsewhere, by a signal handler for instance, and must outlive this.
@@ -31,7 +31,7 @@ class Progress {
     /// True once the job should finish what it is at and return what it has.
     bool stopped() const { return stop_ != nullptr && stop_->load(std::memory_order_relaxed); }
 
-   private:
+ private:
     Sink sink_;
     const std::atomic<bool>* stop_ = nullptr;
 };

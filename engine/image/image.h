@@ -15,9 +15,14 @@ struct Image {
     std::vector<float> values;  ///< width * height * channels
 
     Image() = default;
-    Image(int w, int h, int c) : width(w), height(h), channels(c), values(std::size_t(w) * std::size_t(h) * std::size_t(c)) {}
+    Image(int w, int h, int c)
+        : width(w), height(h), channels(c), values(std::size_t(w) * std::size_t(h) * std::size_t(c))
+    {}
     std::size_t pixel_count() const { return std::size_t(width) * std::size_t(height); }
-    float& at(int x, int y, int c) { return values[(std::size_t(y) * std::size_t(width) + std::size_t(x)) * std::size_t(channels) + std::size_t(c)]; }
+    float& at(int x, int y, int c)
+    {
+        return values[(std::size_t(y) * std::size_t(width) + std::size_t(x)) * std::size_t(channels) + std::size_t(c)];
+    }
     float at(int x, int y, int c) const { return const_cast<Image&>(*this).at(x, y, c); }
 };
 
@@ -26,9 +31,9 @@ struct Image {
 struct Texels {
     int width = 0;
     int height = 0;
-    bool is_8_bit = true;                ///< else values are in `wide`
-    std::vector<std::uint8_t> bytes;     ///< RGBA, 4 a texel, when is_8_bit
-    std::vector<float> wide;             ///< RGBA, 4 a texel, as coded (16-bit codes / 65535) otherwise
+    bool is_8_bit = true;             ///< else values are in `wide`
+    std::vector<std::uint8_t> bytes;  ///< RGBA, 4 a texel, when is_8_bit
+    std::vector<float> wide;          ///< RGBA, 4 a texel, as coded (16-bit codes / 65535) otherwise
 };
 
 }  // namespace etalon

@@ -2,18 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/error.h"
 #include "engine/math/robust.h"
 
 namespace etalon {
 namespace {
-
-/// The world axis that lies least along `direction`.
-dvec3 least_axis(const dvec3& direction)
-{
-    const dvec3 d = glm::abs(direction);
-    if (d.x <= d.y && d.x <= d.z) return dvec3(1, 0, 0);
-    return d.y <= d.z ? dvec3(0, 1, 0) : dvec3(0, 0, 1);
-}
 
 void require(bool valid, const std::string& what)
 {
@@ -36,18 +32,6 @@ dmat4 compose(const dvec3& translation, const dquat& rotation, const dvec3& scal
 dmat3 cofactor(const dmat3& m)
 {
     return dmat3(robust_cross(m[1], m[2]), robust_cross(m[2], m[0]), robust_cross(m[0], m[1]));
-}
-
-dmat4 look_at(const dvec3& eye, const dvec3& target, const dvec3& up)
-{
-    constexpr double kParallel =
-        1e-3;  // sine below which up no longer tells which way is up: it would turn by its own rounding
-    const dvec3 back = unit(eye - target).value_or(dvec3(0, 0, 1));
-    dvec3 right = robust_cross(unit(up).value_or(back), back);
-    if (robust_length(right) < kParallel) right = robust_cross(least_axis(back), back);
-    const dvec3 x = *unit(right);
-    const dvec3 y = *unit(robust_cross(back, x));
-    return dmat4(dvec4(x, 0), dvec4(y, 0), dvec4(back, 0), dvec4(eye, 1));
 }
 
 dmat4 perspective(double yfov, double aspect, double near)

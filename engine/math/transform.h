@@ -10,11 +10,6 @@ dmat4 compose(const dvec3& translation, const dquat& rotation, const dvec3& scal
 /// Its result is not unit, and a mirroring m turns it to the other side.
 dmat3 cofactor(const dmat3& m);
 
-/// world_from_camera of a camera at `eye` that sees `target` with `up` upwards on its picture; it looks down its −Z.
-/// Where `up` is within 10⁻³ rad of the view or no direction, the world axis that lies least along the view replaces it
-/// (G29); where target and eye are one point it looks down the world's −Z. Orthonormal always.
-dmat4 look_at(const dvec3& eye, const dvec3& target, const dvec3& up = dvec3(0, 1, 0));
-
 /// clip_from_camera with reversed, infinite depth and Vulkan's y (TF-4). `yfov`: full vertical angle in radians, in (0,
 /// π); `aspect`: width/height > 0; `near` > 0, metres. Throws Error(input) outside (G8).
 dmat4 perspective(double yfov, double aspect, double near);

@@ -37,6 +37,9 @@ inline constexpr double kPi = 3.14159265358979323846;
 /// Linear Rec.709 values: radiance in nit unless said otherwise.
 using Rgb = vec3;
 
-inline bool is_finite(const dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+inline bool is_finite(const dvec3& v)
+{
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 
 }  // namespace etalon
