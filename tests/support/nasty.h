@@ -66,25 +66,6 @@ std::vector<Value<T>> scalars()
     return all;
 }
 
-/// Directions at which a formula may lose an axis; unit to rounding.
-inline std::vector<Value<dvec3>> unit_vectors()
-{
-    return {
-        {"+x", dvec3(1, 0, 0)},
-        {"-x", dvec3(-1, 0, 0)},
-        {"+y", dvec3(0, 1, 0)},
-        {"-y", dvec3(0, -1, 0)},
-        {"+z", dvec3(0, 0, 1)},
-        {"-z", dvec3(0, 0, -1)},
-        {"-z with negative zeros", dvec3(-0.0, -0.0, -1)},
-        {"equator with z = -0", dvec3(1, 0, -0.0)},
-        {"a hair from -z", dvec3(1e-9, 0, -1)},
-        {"a denormal from -z", dvec3(0, 1e-310, -1)},
-        {"diagonal", dvec3(1, 1, 1) / std::sqrt(3.0)},
-        {"diagonal below", dvec3(-1, 1, -1) / std::sqrt(3.0)},
-    };
-}
-
 struct Triangle {
     const char* why;
     std::array<vec3, 3> positions;

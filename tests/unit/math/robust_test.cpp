@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 
 #include <random>
+#include <string>
 
+#include "tests/support/nasty.h"
 #include "tests/support/ulp.h"
 
 namespace etalon {
@@ -32,6 +34,19 @@ TEST(Robust, A1_difference_of_products_keeps_two_units_where_the_plain_form_lose
             std::max(worst_plain, std::abs((double(a) * double(b) - double(c) * double(d)) / double(truth) - 1));
     }
     EXPECT_GT(worst_plain, 1e-3) << "the exhibit should have failed";
+}
+
+TEST(Robust, G12_normals_of_nasty_triangles_are_square_to_their_edges_or_nothing)
+{
+    for (const auto& [why, p] : nasty::triangles()) {
+        const dvec3 ab = dvec3(p[1]) - dvec3(p[0]), ac = dvec3(p[2]) - dvec3(p[0]);
+        const dvec3 normal = robust_cross(ab, ac);
+        const bool degenerate = p[0] == p[1] || p[1] == p[2] || std::string(why) == "collinear";
+        EXPECT_EQ(robust_length(normal) == 0, degenerate) << why;
+        const double bound = 4e-16 * robust_length(normal);
+        EXPECT_LE(std::abs(dot(normal, ab)), bound * robust_length(ab)) << why;
+        EXPECT_LE(std::abs(dot(normal, ac)), bound * robust_length(ac)) << why;
+    }
 }
 
 TEST(Robust, A3_length_holds_from_one_denormal_to_the_largest)
