@@ -97,16 +97,19 @@ class SceneIndex {
 inline bool SceneIndex::enters(const Box& box, const RayBox& ray, double t_max)
 {
     // Far above 1 + 2 γ₃ (promise G20) and the rounding of a hit's own t: no hit that trying every shape finds is lost.
-    constexpr double kSlack = 1e-10;
+    constexpr double kWiden = 1 + 2e-10;
     double t0 = 0, t1 = t_max;
-    for (int i = 0; i < 3; ++i) {
-        const bool down = std::signbit(ray.inverse[i]);
-        const double near = ((down ? box.high : box.low)[i] - ray.origin[i]) * ray.inverse[i] * (1 - kSlack);
-        const double far = ((down ? box.low : box.high)[i] - ray.origin[i]) * ray.inverse[i] * (1 + kSlack);
+    const auto slab = [&](double low, double high, double origin, double inverse) {
+        const bool down = std::signbit(inverse);
+        const double near = ((down ? high : low) - origin) * inverse;
+        const double far = ((down ? low : high) - origin) * inverse;
         t0 = near > t0 ? near : t0;
         t1 = far < t1 ? far : t1;
-    }
-    return t0 <= t1;
+    };
+    slab(box.low.x, box.high.x, ray.origin.x, ray.inverse.x);
+    slab(box.low.y, box.high.y, ray.origin.y, ray.inverse.y);
+    slab(box.low.z, box.high.z, ray.origin.z, ray.inverse.z);
+    return t0 <= t1 * kWiden;
 }
 
 inline bool SceneIndex::before(const Hit& a, const Hit& b) const
