@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "engine/math/transform.h"
 #include "engine/scene/gltf_accessor.h"
@@ -12,7 +11,6 @@ namespace etalon::gltf {
 
 namespace {
 
-constexpr double kHuge = std::numeric_limits<double>::max();
 constexpr std::size_t kMaxInstances = 10'000'000;
 
 dmat4 transform_of(const tinygltf::Node& in, const std::string& pointer)
