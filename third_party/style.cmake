@@ -7,6 +7,6 @@ if(NOT CLANG_FORMAT OR NOT RUN_CLANG_TIDY OR NOT GIT_EXECUTABLE)
 endif()
 add_custom_target(style
     COMMAND ${GIT_EXECUTABLE} ls-files -z *.h *.cpp | xargs -0 ${CLANG_FORMAT} --dry-run -Werror
-    COMMAND ${RUN_CLANG_TIDY} -quiet -j 2 -p ${PROJECT_BINARY_DIR} ${PROJECT_SOURCE_DIR}/[a-z]+/
+    COMMAND ${RUN_CLANG_TIDY} -quiet -j 2 -p ${PROJECT_BINARY_DIR} "${PROJECT_SOURCE_DIR}/(engine|tools|samples|tests)/"
     WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} USES_TERMINAL VERBATIM)
 add_dependencies(style etalon_shaders)  # clang-tidy reads the headers that are made of them

@@ -56,6 +56,12 @@ class Scenes(Case):
                     self.assertIn(os.path.basename(target), run.err)
         self.assert_only()
 
+    def test_names_that_look_like_options_or_are_no_text_are_names(self):
+        with open(self.path("-odd.glb"), "wb") as file:
+            file.write(glb())
+        self.run_etalon("explain", "--", "-odd.glb", cwd=self.folder)
+        self.assertEqual(self.run_etalon("explain", b"\xff.glb", "--json", code=2, cwd=self.folder).json["error"]["exit_code"], 2)
+
     def test_an_unknown_builtin_scene_is_refused(self):
         self.assertIn("cornell", self.run_etalon("explain", "builtin:cornel", code=2).err)
 

@@ -54,7 +54,7 @@ class Case(unittest.TestCase):
 
     def run_etalon(self, *arguments, code=0, **options):
         run = Run(arguments, **options)
-        self.assertEqual(run.code, code, f"etalon {' '.join(arguments)}\n{run.err}")
+        self.assertEqual(run.code, code, f"etalon {arguments}\n{run.err}")
         return run
 
     def assert_only(self, *names):
