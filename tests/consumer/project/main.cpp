@@ -1,4 +1,5 @@
-// A program of another project: renders a built-in scene on the CPU and on the Vulkan device, and checks that both are pictures.
+// A program of another project: renders a built-in scene on the CPU and on the Vulkan device, and checks that both are
+// pictures.
 #include <cstdio>
 
 #include "engine/image/develop.h"
