@@ -45,6 +45,10 @@ class Render(Case):
                 header, _, _ = png(self.path("x.png"))
                 self.assertEqual(header, (24, 16, 8, 6))  # 8 bits, RGBA
 
+    def test_one_sample_says_why_it_has_no_error(self):
+        run = self.run_etalon("render", "builtin:cornell", "--renderer", "reference", "--spp", "1", *SMALL, "-o", self.path("x.png"))
+        self.assertIn("error not known from one sample per pixel", run.err)
+
     def test_pictures_carry_what_made_them(self):
         self.run_etalon("render", "builtin:cornell", "--renderer", "reference", "--spp", "3", "--seed", "7", *SMALL, "-o", self.path("x.png"))
         texts = png(self.path("x.png"))[1]

@@ -66,7 +66,7 @@ void tell(const Job& job, const Picture& picture, const RenderSettings& settings
     for (const std::string& output : job.outputs)
         say(fmt::format("{}: {}x{}, {}{}, {}; error {}", output == "-" ? "standard output" : output, film.width,
                         film.height, label(settings.renderer), samples, describe_seconds(picture.seconds.render),
-                        describe_error(estimate_error(film))));
+                        describe_error(film, settings.renderer)));
 }
 
 Json as_json(const Job& job, const Picture& picture, const RenderSettings& settings,
@@ -89,7 +89,7 @@ Json as_json(const Job& job, const Picture& picture, const RenderSettings& setti
          {"samples", film.samples},
          {"seed", settings.seed},
          {"error", error},
-         {"error_text", describe_error(estimate_error(film))},
+         {"error_text", describe_error(film, settings.renderer)},
          {"nonfinite_samples", film.nonfinite},
          {"truncated_paths", film.truncated},
          {"findings", findings},

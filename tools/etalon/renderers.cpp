@@ -59,7 +59,7 @@ void describe(Film& film, const PosedScene& posed, const RenderSettings& setting
     for (const Knob& knob : knobs())
         if (knob.metric != KnobMetric::none) text += fmt::format(" {}={}", knob.name, knob_value(settings, knob.name));
     data["world_from_camera"] = describe(posed.view.world_from_camera);
-    data["error"] = describe_error(estimate_error(film));
+    data["error"] = describe_error(film, settings.renderer);
 }
 
 }  // namespace
@@ -156,9 +156,11 @@ std::string_view label(Renderer renderer)
     return {};
 }
 
-std::string describe_error(const std::optional<ErrorEstimate>& error)
+std::string describe_error(const Film& film, Renderer renderer)
 {
-    if (!error) return "not measured";
+    const std::optional<ErrorEstimate> error = estimate_error(film);
+    const bool traced = renderer == Renderer::path || renderer == Renderer::reference;
+    if (!error) return traced ? "not known from one sample per pixel" : "not measured";
     return fmt::format("{:.3g}% (95% interval {:.3g}% to {:.3g}%)", error->relative * 100, error->low * 100,
                        error->high * 100);
 }

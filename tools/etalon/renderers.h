@@ -49,7 +49,8 @@ class Renderers {
 std::string_view name(Renderer renderer);
 std::string_view label(Renderer renderer);
 
-/// "1.23% (95% interval 1.10% to 1.36%)"; "not measured" where it was not.
-std::string describe_error(const std::optional<ErrorEstimate>& error);
+/// "1.23% (95% interval 1.10% to 1.36%)"; "not measured" of a rasterized film; of a path-traced one with a single
+/// sample a pixel, that this is the reason.
+std::string describe_error(const Film& film, Renderer renderer);
 
 }  // namespace etalon::cli
