@@ -88,7 +88,8 @@ shared::LightRecord pack(const PosedLight& posed, const dvec3& eye)
 {
     const Light& light = posed.light;
     const double cos_outer = std::cos(light.outer_cone);
-    // Finite for a hard cone, yet no softer than floats can tell (SH-22); KHR_lights_punctual's 0.001 blurs a rim of degrees.
+    // Finite for a hard cone, yet no softer than floats can tell (SH-22); KHR_lights_punctual's 0.001 blurs a rim of
+    // degrees.
     const double scale = 1 / std::max(1e-6, std::cos(light.inner_cone) - cos_outer);
     const shared::uint type = light.type == LightType::point  ? shared::kLightPoint
                               : light.type == LightType::spot ? shared::kLightSpot

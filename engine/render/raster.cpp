@@ -51,44 +51,6 @@ auto timed(std::vector<StageTime>& times, const char* name, Make make)
     return made;
 }
 
-gpu::Image make_target(gpu::Device& device, const View& view, VkFormat format, std::uint32_t samples, const char* name)
-{
-    const bool depth = format == kRasterDepth;
-    VkImageUsageFlags usage = depth ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT : VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
-    if (samples == 1 && !depth) usage |= VK_IMAGE_USAGE_SAMPLED_BIT;
-    return {device,
-            {.format = format,
-             .width = static_cast<std::uint32_t>(view.width),
-             .height = static_cast<std::uint32_t>(view.height),
-             .samples = samples,
-             .usage = usage,
-             .name = name}};
-}
-
-/// Three or four channels to RGBA float32 on the device; one black texel for an empty picture.
-gpu::Image upload_picture(gpu::Device& device, const Image& picture, const char* name)
-{
-    const Image& source = picture.values.empty() ? Image(1, 1, 4) : picture;
-    std::vector<float> texels;
-    if (source.channels != 4) {
-        texels.reserve(source.pixel_count() * 4);
-        for (int y = 0; y < source.height; ++y)
-            for (int x = 0; x < source.width; ++x) {
-                for (int c = 0; c < 3; ++c) texels.push_back(source.at(x, y, c));
-                texels.push_back(1);
-            }
-    }
-    gpu::Image image(device, {.format = kRasterColor,
-                              .width = static_cast<std::uint32_t>(source.width),
-                              .height = static_cast<std::uint32_t>(source.height),
-                              .usage = VK_IMAGE_USAGE_SAMPLED_BIT,
-                              .name = name});
-    const std::array<gpu::ImagePart, 1> part{
-        {{.texels = std::as_bytes(std::span<const float>(texels.empty() ? source.values : texels))}}};
-    gpu::upload(device, image, part);
-    return image;
-}
-
 template <class T>
 void write(const gpu::Buffer& buffer, std::span<const T> values)
 {
@@ -238,19 +200,12 @@ void RasterScene::bind_frame()
 
 void RasterScene::resize(const View& view)
 {
-    const auto width = static_cast<std::uint32_t>(view.width);
-    const auto height = static_cast<std::uint32_t>(view.height);
-    if (targets_.resolved && targets_.resolved.width() == width && targets_.resolved.height() == height) return;
-    targets_ = {};
-    const std::uint32_t samples = variants_.samples();
-    if (samples > 1) targets_.color = make_target(device_, view, kRasterColor, samples, "colour samples");
-    targets_.depth = make_target(device_, view, kRasterDepth, samples, "depth samples");
-    targets_.resolved = make_target(device_, view, kRasterColor, 1, "picture");
-    if (!settings_.aovs || !required_.has(Feature::aovs)) return;
-    for (std::size_t i = 0; i < kRasterAovTargets; ++i)
-        targets_.aovs[i] =
-            make_target(device_, view, i + 1 == kRasterAovTargets ? kRasterIds : kRasterColor, 1, "AOVs");
-    targets_.aov_depth = make_target(device_, view, kRasterDepth, 1, "AOV depth");
+    const bool fits = targets_.resolved && targets_.resolved.width() == static_cast<std::uint32_t>(view.width) &&
+                      targets_.resolved.height() == static_cast<std::uint32_t>(view.height);
+    if (fits) return;
+    targets_ = {};  // before the new ones take their memory
+    targets_ = make_targets(device_, {view.width, view.height}, variants_.samples(),
+                            settings_.aovs && required_.has(Feature::aovs));
 }
 
 void RasterScene::write_frame(const View& view)
@@ -276,7 +231,7 @@ void RasterScene::draw(const View& view)
     write_frame(view);
     gpu::Commands& commands = commands_.emplace(device_, "raster");
     draw_color(commands, view);
-    if (targets_.aov_depth) draw_aovs(commands, view);
+    if (targets_.has_aovs()) draw_aovs(commands, view);
     commands.prepare(targets_.resolved, gpu::ImageUse::sampled);
     commands.submit();
 }
@@ -286,7 +241,7 @@ void RasterScene::draw_color(gpu::Commands& commands, const View& view)
     VkClearColorValue clear{{0, 0, 0, settings_.background == Background::transparent ? 0.f : 1.f}};
     if (settings_.background == Background::colour)
         for (int c = 0; c < 3; ++c) clear.float32[c] = static_cast<float>(settings_.background_color[c]);
-    const bool multisampled = static_cast<bool>(targets_.color);
+    const bool multisampled = targets_.is_multisampled();
     const std::array<gpu::ColorTarget, 1> color{{{.image = multisampled ? &targets_.color : &targets_.resolved,
                                                   .clear = clear,
                                                   .resolve = multisampled ? &targets_.resolved : nullptr,
@@ -396,44 +351,15 @@ Film RasterScene::read()
     assume(commands_.has_value());
     commands_->wait();
     const Stopwatch watch;
-    const std::vector<vec4> pixels = gpu::download_as<vec4>(device_, targets_.resolved);
-    Film film;
-    film.width = static_cast<int>(targets_.resolved.width());
-    film.height = static_cast<int>(targets_.resolved.height());
-    film.samples = variants_.samples();
-    film.mean.reserve(pixels.size());
-    film.alpha.reserve(pixels.size());
-    for (const vec4& pixel : pixels) {
-        film.mean.emplace_back(pixel.x, pixel.y, pixel.z);
-        film.alpha.push_back(pixel.w);
-        if (!is_finite(dvec3(film.mean.back()))) ++film.nonfinite;
-    }
-    if (targets_.aov_depth) read_aovs(film);
+    Film film = read_targets(device_, targets_);
     read_milliseconds_ = watch.milliseconds();
+    film.samples = variants_.samples();
     film.metadata["renderer"] = "raster";
     film.metadata["device"] = device_.description();
     film.metadata["msaa"] = std::to_string(variants_.samples());
     for (const StageTime& time : times())
         film.metadata["milliseconds." + time.name] = fmt::format("{:.3f}", time.milliseconds);
     return film;
-}
-
-void RasterScene::read_aovs(Film& film)
-{
-    const auto normal_depth = gpu::download_as<vec4>(device_, targets_.aovs[0]);
-    const auto albedo_u = gpu::download_as<vec4>(device_, targets_.aovs[1]);
-    const auto emission_v = gpu::download_as<vec4>(device_, targets_.aovs[2]);
-    const auto ids = gpu::download_as<std::array<std::uint32_t, 2>>(device_, targets_.aovs[3]);
-    Aovs& aovs = film.aovs;
-    for (std::size_t i = 0; i < film.pixel_count(); ++i) {
-        aovs.normal.emplace_back(normal_depth[i]);
-        aovs.depth.push_back(normal_depth[i].w);
-        aovs.albedo.emplace_back(albedo_u[i]);
-        aovs.emission.emplace_back(emission_v[i]);
-        aovs.uv.emplace_back(albedo_u[i].w, emission_v[i].w);
-        aovs.object_id.push_back(ids[i][0]);
-        aovs.material_id.push_back(ids[i][1]);
-    }
 }
 
 std::vector<StageTime> RasterScene::times() const

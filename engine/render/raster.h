@@ -13,6 +13,7 @@
 #include "engine/render/raster_frame.h"
 #include "engine/render/raster_geometry.h"
 #include "engine/render/raster_pipelines.h"
+#include "engine/render/raster_targets.h"
 #include "engine/render/raster_textures.h"
 
 namespace etalon {
@@ -57,14 +58,6 @@ class RasterScene {
         bool mirrored = false;  ///< fronts are clockwise
         dvec3 center{0};        ///< world, metres: what BLEND is sorted by (SH-32)
     };
-    struct Targets {
-        gpu::Image color;  ///< multisampled; empty where one sample is drawn
-        gpu::Image resolved;
-        gpu::Image depth;
-        std::array<gpu::Image, kRasterAovTargets> aovs;  ///< empty unless asked for
-        gpu::Image aov_depth;
-    };
-
     void add_items(const Progress& progress);
     Item item_of(std::uint32_t draw);
     Item item_of_sphere(std::uint32_t sphere);
@@ -82,7 +75,6 @@ class RasterScene {
     void draw_sphere(gpu::Commands& commands, const View& view, const Item& item) const;
     std::vector<const Item*> ordered(AlphaMode mode, const View& view) const;
     bool draws_background() const { return background_ != nullptr; }
-    void read_aovs(Film& film);
 
     gpu::Device& device_;
     const PosedScene& posed_;
@@ -107,7 +99,7 @@ class RasterScene {
     const gpu::GraphicsPipeline* background_ = nullptr;               // null: cleared
     gpu::Bindings background_map_;
     std::map<RasterShape, gpu::Bindings> frame_bindings_;
-    Targets targets_;
+    RasterTargets targets_;
     std::optional<gpu::Commands> commands_;  // of the last draw
 };
 

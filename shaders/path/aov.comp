@@ -14,12 +14,10 @@ void main()
     uint index = gl_GlobalInvocationID.x;
     if (index >= push.slot_count) return;
     PathState path = load_path(index);
-    uvec4 found = imageLoad(hits_in, int(index));
-    bool hit = found.y != kNoPrimitive;
-    float t = uintBitsToFloat(found.x);
-    vec3 wo = -path.direction;
-    vec3 point = path.origin + t * path.direction;
-    Surface s = make_surface(hit ? found.y : 0u, uintBitsToFloat(found.z), uintBitsToFloat(found.w), point, wo);
+    uint primitive = imageLoad(hits_in, int(index)).x;
+    bool hit = primitive != kNoPrimitive && primitive != kLostPrimitive;
+    float t;
+    Surface s = make_surface(hit ? primitive : 0u, path.origin, path.direction, t);
     vec4 base = base_color(s.material, s.uvs, s.color);
     bool emits = s.front || (s.flags & kPrimitiveEmitsBack) != 0u;
     vec3 light = emits ? emission(s.material, s.uvs) : vec3(0.0);

@@ -6,10 +6,10 @@
 #include "shaders/path/scene_data.glsl"
 
 layout(set = 0, binding = kBindPathsIn, rgba32ui) readonly uniform uimageBuffer paths_in;
-layout(set = 0, binding = kBindHits, rgba32ui) readonly uniform uimageBuffer hits_in;
+layout(set = 0, binding = kBindHits, r32ui) readonly uniform uimageBuffer hits_in;
 layout(set = 0, binding = kBindShadows, rgba32ui) readonly uniform uimageBuffer shadows_in;
 layout(set = 0, binding = kBindPathsOut, std430) writeonly buffer PathsOut { vec4 paths_out[]; };
-layout(set = 0, binding = kBindHitsOut, std430) writeonly buffer HitsOut { vec4 hits_out[]; };
+layout(set = 0, binding = kBindHitsOut, std430) writeonly buffer HitsOut { uint hits_out[]; };
 layout(set = 0, binding = kBindShadowsOut, std430) writeonly buffer ShadowsOut { vec4 shadows_out[]; };
 layout(set = 0, binding = kBindRadiance, std430) buffer Radiance { vec4 radiance[]; };
 layout(set = 0, binding = kBindCounters, std430) buffer Counters { uint counters[]; };

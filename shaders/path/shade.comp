@@ -78,10 +78,9 @@ void main()
     bool here = index < count;
     index = min(index, count - 1u);
     PathState path = load_path(index);
-    uvec4 found = imageLoad(hits_in, int(index));
-    float t = uintBitsToFloat(found.x);
-    uint primitive = found.y;
-    bool hit = primitive != kNoPrimitive;
+    uint primitive = imageLoad(hits_in, int(index)).x;
+    bool lost = primitive == kLostPrimitive;
+    bool hit = primitive != kNoPrimitive && !lost;
     bool camera_ray = push.iteration == 0u;
     bool last = push.iteration + 1u >= frame.max_depth;
 
@@ -91,25 +90,24 @@ void main()
     uint id = picture_pixel(pixel);
     uint sample_index = push.first_sample + sample_in_pass;
 
-    vec3 wo = -path.direction;
-    Surface s = make_surface(hit ? primitive : 0u, uintBitsToFloat(found.z), uintBitsToFloat(found.w),
-                             path.origin + t * path.direction, wo);
+    float t;
+    Surface s = make_surface(hit ? primitive : 0u, path.origin, path.direction, t);
     vec4 base = base_color(s.material, s.uvs, s.color);
     Bsdf bsdf = make_bsdf(s, base.xyz);
     Frame local = make_frame(s.n);
-    vec3 wo_local = to_local(local, wo);
+    vec3 wo_local = to_local(local, -path.direction);
     wo_local.z = max(wo_local.z, 1e-7);
 
     bool unlit = kUnlit && bsdf.model == kModelUnlit;
     bool black = !s.front && (material_flags(s.material) & kMaterialBlackBack) != 0u;
-    bool scatters = here && hit && !unlit && !black && is_finite(t);
+    bool scatters = here && hit && !unlit && !black;
 
     Collected collected = Collected(vec3(0.0), 1.0);
-    if (!hit) collected = leave_scene(path, camera_ray);
+    if (primitive == kNoPrimitive) collected = leave_scene(path, camera_ray);
     if (kEmission && hit) collected.light = collect_emission(path, s, primitive, t);
     if (unlit && hit) collected.light = path.throughput * base.xyz;
     // A ray that the traversal gave up: the sample is lost and counted, not guessed.
-    if (!is_finite(t)) collected.light = vec3(t);
+    if (lost) collected.light = vec3(uintBitsToFloat(0x7fc00000u));
 
     // Direct light.
     PathState shadow = path;
@@ -157,9 +155,11 @@ void main()
     place = append(counter_at(push.iteration + 1u, kCountPaths), goes_on && !last);
     if (goes_on && !last) store_path(place, next);
 
-    if (here) {
-        float truncated = last && goes_on ? 2.0 : 0.0;
-        vec4 before = camera_ray ? vec4(0.0, 0.0, 0.0, collected.alpha) : radiance[path.slot];
-        radiance[path.slot] = before + vec4(collected.light, truncated);
+    // Stores are the dearest instructions of lavapipe: most segments of most scenes have nothing to add.
+    bool cut = last && goes_on;
+    if (here && camera_ray) {
+        radiance[path.slot] = vec4(collected.light, collected.alpha + (cut ? 2.0 : 0.0));
+    } else if (here && (cut || collected.light != vec3(0.0))) {
+        radiance[path.slot] += vec4(collected.light, cut ? 2.0 : 0.0);
     }
 }

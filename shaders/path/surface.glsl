@@ -2,6 +2,7 @@
 #ifndef ETALON_PATH_SURFACE_GLSL
 #define ETALON_PATH_SURFACE_GLSL
 #include "shaders/path/material.glsl"
+#include "shaders/path/primitive.glsl"
 
 // What a point may be away from the true surface, over the largest coordinate that it was made of: 32 u covers the rounding
 // of barycentric interpolation (4 u) and of the next intersection with a coplanar neighbour (about 10 u) (G23, RT-6).
@@ -62,19 +63,22 @@ vec3 shading_normal(uint primitive, vec3 w, vec3 ng, uint material, vec4 uvs)
     return n;
 }
 
-// The surface where a ray that travels along -wo met `primitive` at `point` or at barycentrics (u, v).
-Surface make_surface(uint primitive, float u, float v, vec3 point, vec3 wo)
+// The surface where a ray met `primitive`; `t` receives how far that is.
+Surface make_surface(uint primitive, vec3 origin, vec3 direction, out float t)
 {
     PrimitiveData data = load_primitive(primitive);
     bool sphere = kSpheres && (data.flags & kPrimitiveSphere) != 0u;
-    vec3 w = vec3(1.0 - u - v, u, v);
+    Meeting m = meet_primitive(make_ray_frame(origin, direction), direction, data);
+    vec3 w = vec3(1.0 - m.u - m.v, m.u, m.v);
+    vec3 wo = -direction;
+    t = m.t;
     Surface s;
     s.flags = data.flags;
     s.material = data.flags & kPrimitiveMaterial;
     s.light_density = data.light_density;
     s.object = data.object;
     place_on_triangle(data, w, s);
-    if (sphere) place_on_sphere(data, point, s);
+    if (sphere) place_on_sphere(data, origin + t * direction, s);
     s.uvs = uvs_at(primitive, w);
     s.color = color_at(primitive, w);
     s.n = shading_normal(primitive, w, s.ng, s.material, s.uvs);

@@ -14,10 +14,10 @@ layout(constant_id = kSpecRaysPerLane) const uint kRaysPerLane = 32u;
 
 // Steps of a lane after which it takes no more rays: each is one turn of an inner loop, and of the two loops around it.
 const uint kMaxSteps = 20000u;
-// A loop goes on while more lanes than this are in it (measured on lavapipe with 8 lanes: docs/testing.md).
-const int kFewAtNodes = 2;
-const int kFewAtLeaves = 1;
-const int kFewToRefill = 1;
+// A loop goes on while more lanes than this are in it; new rays are taken when this many lanes are free.
+layout(constant_id = kSpecFewAtNodes) const int kFewAtNodes = 2;
+layout(constant_id = kSpecFewAtLeaves) const int kFewAtLeaves = 1;
+layout(constant_id = kSpecRefill) const int kRefill = 1;
 
 int subgroup_sum(int x)
 {
@@ -98,8 +98,6 @@ int visit_leaf(Ray ray, int node, inout Hit hit)
     bool met = meet(ray, leaf >> 4, candidate) && here && (leaf & 15u) != 0u;
     hit.t = met ? candidate.t : hit.t;
     hit.primitive = met ? candidate.primitive : hit.primitive;
-    hit.u = met ? candidate.u : hit.u;
-    hit.v = met ? candidate.v : hit.v;
     bool more = (leaf & 15u) > 1u;
     bool pop = here && !more;
     int top = stack[0];
@@ -118,7 +116,7 @@ void main()
     uint current = 0u;   // index of the ray at hand
     bool busy = false;   // there is one
     int node = kDone;
-    Hit hit = Hit(0.0, kNoPrimitive, 0.0, 0.0);
+    Hit hit = Hit(0.0, kNoPrimitive);
     float t_max;
     Ray ray = load_ray(min(index, count - 1u), t_max);
     for (int i = 0; i < kStack; ++i) stack[i] = kDone;
@@ -139,7 +137,7 @@ void main()
         Ray next = load_ray(min(index, count - 1u), next_t_max);
         if (take) {
             ray = next;
-            hit = Hit(next_t_max, kNoPrimitive, 0.0, 0.0);
+            hit = Hit(next_t_max, kNoPrimitive);
             current = index;
             index += lanes;
             ++taken;
@@ -161,7 +159,7 @@ void main()
             } while (subgroup_sum(node < 0 && node != kDone ? 1 : 0) > kFewAtLeaves && steps < kMaxSteps);
             // Low half: lanes that could take a new ray; high half: lanes at work.
             int state = subgroup_sum(node == kDone ? (has_more ? 1 : 0) : 0x10000);
-            if ((state & 0xffff) > kFewToRefill - 1 || (state >> 16) == 0 || steps >= kMaxSteps) break;
+            if ((state & 0xffff) >= kRefill || (state >> 16) == 0 || steps >= kMaxSteps) break;
         }
         if (steps >= kMaxSteps) break;
     }

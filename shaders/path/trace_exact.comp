@@ -1,6 +1,6 @@
 // Finds what rays meet, one ray an invocation, with a stack in memory that is never too small: on GPUs for all rays, on
 // software Vulkan for those that the persistent kernel leaves (kSpecRetry). A ray that has not ended after as many steps as
-// lavapipe grants an invocation is given a NaN distance, so that its sample is counted as lost and not mistaken.
+// lavapipe grants an invocation is marked, so that its sample is counted as lost and not mistaken.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -22,7 +22,7 @@ void main()
 
     float t_max;
     Ray ray = load_ray(index, t_max);
-    Hit hit = Hit(t_max, kNoPrimitive, 0.0, 0.0);
+    Hit hit = Hit(t_max, kNoPrimitive);
     int stack[kStack];
     int height = 0;
     int node = 0;
@@ -53,6 +53,6 @@ void main()
         }
         if (pop) node = height > 0 ? stack[--height] : kDone;
     }
-    if (steps >= kMaxSteps) hit = Hit(uintBitsToFloat(0x7fc00000u), 0u, 0.0, 0.0);
+    if (steps >= kMaxSteps) hit.primitive = kLostPrimitive;
     store_result(index, hit);
 }

@@ -33,7 +33,7 @@ void store_result(uint index, Hit hit)
         uvec4 c = imageLoad(shadows_in, int(3u * index + 2u));
         if (hit.primitive == kNoPrimitive) radiance[c.w].xyz += uintBitsToFloat(c.xyz);
     } else {
-        hits_out[index] = vec4(hit.t, uintBitsToFloat(hit.primitive), hit.u, hit.v);
+        hits_out[index] = hit.primitive;  // one word: where exactly is computed again where it is shaded
     }
 }
 

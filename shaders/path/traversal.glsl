@@ -2,8 +2,7 @@
 #ifndef ETALON_PATH_TRAVERSAL_GLSL
 #define ETALON_PATH_TRAVERSAL_GLSL
 #include "shaders/path/material.glsl"
-#include "shaders/lib/sphere.glsl"
-#include "shaders/lib/triangle.glsl"
+#include "shaders/path/primitive.glsl"
 #include "shaders/shared/rng.h"
 
 layout(constant_id = kSpecShadow) const bool kShadow = false;
@@ -49,8 +48,6 @@ int child_key(uvec4 child, Ray ray, int t_max)
 struct Hit {
     float t;
     uint primitive;
-    float u;
-    float v;
 };
 
 // Is a partly covered surface there for this ray? Decided by a number of the ray and the primitive alone, so that the order
@@ -66,33 +63,12 @@ bool is_there(Ray ray, uint primitive, uint flags, float u, float v)
 bool meet(Ray ray, uint primitive, inout Hit hit)
 {
     PrimitiveData data = load_primitive(primitive);
-    bool met = false;
-    bool front = true;
-    float t = 0.0;
-    vec2 uv = vec2(0.0);
-    if (kTriangles) {
-        TriangleHit triangle = intersect_triangle(ray.frame, data.p0, data.p1, data.p2);
-        met = triangle.hit && primitive != ray.self;
-        front = triangle.front;
-        t = triangle.t;
-        uv = vec2(triangle.u, triangle.v);
-    }
+    Meeting m = meet_primitive(ray.frame, ray.direction, data);
     bool culled = (data.flags & kPrimitiveCulled) != 0u;
-    met = met && t > 0.0 && !(culled && !front);
-    if (kSpheres && (data.flags & kPrimitiveSphere) != 0u) {
-        vec2 both;
-        bool crosses = intersect_sphere(ray.frame.origin, ray.direction, data.p0, data.p1.x, both);
-        bool enters = both.x > 0.0;
-        t = enters ? both.x : both.y;
-        met = crosses && t > 0.0 && !(culled && !enters) && primitive != ray.self;
-        uv = vec2(0.0);
-    }
-    met = met && t < hit.t;
-    if (kAlpha && met && (data.flags & kPrimitiveAlpha) != 0u) met = is_there(ray, primitive, data.flags, uv.x, uv.y);
-    hit.t = met ? t : hit.t;
+    bool met = m.met && m.t < hit.t && primitive != ray.self && !(culled && !m.front);
+    if (kAlpha && met && (data.flags & kPrimitiveAlpha) != 0u) met = is_there(ray, primitive, data.flags, m.u, m.v);
+    hit.t = met ? m.t : hit.t;
     hit.primitive = met ? primitive : hit.primitive;
-    hit.u = met ? uv.x : hit.u;
-    hit.v = met ? uv.y : hit.v;
     return met;
 }
 

@@ -4,21 +4,23 @@
 #include "shaders/shared/types.h"
 ETALON_SHARED_BEGIN
 
-// Bindings of set 0. Everything read by kernels is a storage texel buffer of rgba32ui (texels_8: r32ui), floats as bits.
-ETALON_CONSTANT uint kBindFrame = 0u;        // uniform PathFrame
-ETALON_CONSTANT uint kBindNodes = 1u;        // BvhNode: 4 texels, one a child
-ETALON_CONSTANT uint kBindPrimitives = 2u;   // 3 texels: (p0, flags) (p1, light density) (p2, object); see below
-ETALON_CONSTANT uint kBindAttributes = 3u;   // per primitive: normals, uvs, tangents, colours, 3 texels each, if required
-ETALON_CONSTANT uint kBindMaterials = 4u;    // MaterialRecord in 16 texels
-ETALON_CONSTANT uint kBindTextures = 5u;     // (first texel, width | height << 16, flags, 0)
-ETALON_CONSTANT uint kBindTexels8 = 6u;      // RGBA, 8 bits each
+// Bindings of set 0. Everything read by kernels is a storage texel buffer of rgba32ui (texels_8: r32ui), floats as
+// bits.
+ETALON_CONSTANT uint kBindFrame = 0u;       // uniform PathFrame
+ETALON_CONSTANT uint kBindNodes = 1u;       // BvhNode: 4 texels, one a child
+ETALON_CONSTANT uint kBindPrimitives = 2u;  // 3 texels: (p0, flags) (p1, light density) (p2, object); see below
+ETALON_CONSTANT uint kBindAttributes =
+    3u;                                    // per primitive: normals, uvs, tangents, colours, 3 texels each, if required
+ETALON_CONSTANT uint kBindMaterials = 4u;  // MaterialRecord in 16 texels
+ETALON_CONSTANT uint kBindTextures = 5u;   // (first texel, width | height << 16, flags, 0)
+ETALON_CONSTANT uint kBindTexels8 = 6u;    // RGBA, 8 bits each
 ETALON_CONSTANT uint kBindTexelsWide = 7u;   // RGBA, floats
 ETALON_CONSTANT uint kBindLights = 8u;       // LightRecord in 4 texels
 ETALON_CONSTANT uint kBindEmitters = 9u;     // alias table: (threshold, other entry's primitive, own primitive, 0)
 ETALON_CONSTANT uint kBindSkyCells = 10u;    // alias table: (threshold, other cell, own density, other's density)
 ETALON_CONSTANT uint kBindSkyMap = 11u;      // RGB of the environment, floats
 ETALON_CONSTANT uint kBindPathsIn = 12u;     // path queue, read: 3 texels a path
-ETALON_CONSTANT uint kBindHits = 13u;        // read: (t, primitive, u, v)
+ETALON_CONSTANT uint kBindHits = 13u;        // read: the primitive that each path met, r32ui
 ETALON_CONSTANT uint kBindShadows = 14u;     // shadow queue, read: 3 texels a ray
 ETALON_CONSTANT uint kBindRadianceIn = 15u;  // per slot, read
 ETALON_CONSTANT uint kBindPathsOut = 16u;    // the same, written
@@ -53,39 +55,42 @@ ETALON_CONSTANT uint kSpecMirror = 16u;
 ETALON_CONSTANT uint kSpecRoughConductor = 17u;
 ETALON_CONSTANT uint kSpecDielectric = 18u;
 ETALON_CONSTANT uint kSpecRoughDielectric = 19u;
-ETALON_CONSTANT uint kSpecEmission = 20u;   // some surface emits
+ETALON_CONSTANT uint kSpecEmission = 20u;  // some surface emits
 ETALON_CONSTANT uint kSpecPunctual = 21u;
-ETALON_CONSTANT uint kSpecSky = 22u;        // the environment is not black
-ETALON_CONSTANT uint kSpecSkyMap = 23u;     // it is a map
+ETALON_CONSTANT uint kSpecSky = 22u;     // the environment is not black
+ETALON_CONSTANT uint kSpecSkyMap = 23u;  // it is a map
 ETALON_CONSTANT uint kSpecThinLens = 24u;
 ETALON_CONSTANT uint kSpecOrthographic = 25u;
-ETALON_CONSTANT uint kSpecShadow = 26u;     // trace kernels: shadow rays, not path segments
-ETALON_CONSTANT uint kSpecBlendSolid = 27u; // trace kernels, for AOVs: BLEND counts as a surface
-ETALON_CONSTANT uint kSpecRetry = 28u;      // exact trace kernel: rays named by the retry list, not all of them
-ETALON_CONSTANT uint kSpecStack = 29u;      // entries of the traversal's stack
+ETALON_CONSTANT uint kSpecShadow = 26u;      // trace kernels: shadow rays, not path segments
+ETALON_CONSTANT uint kSpecBlendSolid = 27u;  // trace kernels, for AOVs: BLEND counts as a surface
+ETALON_CONSTANT uint kSpecRetry = 28u;       // exact trace kernel: rays named by the retry list, not all of them
+ETALON_CONSTANT uint kSpecStack = 29u;       // entries of the traversal's stack
 ETALON_CONSTANT uint kSpecRaysPerLane = 30u;
 ETALON_CONSTANT uint kSpecSubgroupLog2 = 31u;
-ETALON_CONSTANT uint kSpecAlphaBlend = 32u;
+ETALON_CONSTANT uint kSpecFewAtNodes = 32u;  // persistent trace kernel: its loops end when this few lanes are in them
+ETALON_CONSTANT uint kSpecFewAtLeaves = 33u;
+ETALON_CONSTANT uint kSpecRefill = 34u;  // lanes that must be free before new rays are taken
 
 ETALON_CONSTANT uint kPathWorkgroup = 64u;
 
 // Bits of a primitive's flags; the low 24 are its material.
 ETALON_CONSTANT uint kPrimitiveMaterial = 0x00ffffffu;
-ETALON_CONSTANT uint kPrimitiveCulled = 1u << 24u;       // seen and hit from the front alone
-ETALON_CONSTANT uint kPrimitiveAlpha = 1u << 25u;        // masked or blended
-ETALON_CONSTANT uint kPrimitiveSphere = 1u << 26u;       // p0 = centre, p1.x = radius
-ETALON_CONSTANT uint kPrimitiveEmitsBack = 1u << 27u;    // emits to both sides
+ETALON_CONSTANT uint kPrimitiveCulled = 1u << 24u;     // seen and hit from the front alone
+ETALON_CONSTANT uint kPrimitiveAlpha = 1u << 25u;      // masked or blended
+ETALON_CONSTANT uint kPrimitiveSphere = 1u << 26u;     // p0 = centre, p1.x = radius
+ETALON_CONSTANT uint kPrimitiveEmitsBack = 1u << 27u;  // emits to both sides
 ETALON_CONSTANT uint kNoPrimitive = 0xffffffffu;
+ETALON_CONSTANT uint kLostPrimitive = 0xfffffffeu;  // as a hit: the traversal gave the ray up
 
 // Bits of a texture's flags.
-ETALON_CONSTANT uint kTextureWrapU = 3u;         // 0 repeat, 1 mirrored, 2 clamp
+ETALON_CONSTANT uint kTextureWrapU = 3u;  // 0 repeat, 1 mirrored, 2 clamp
 ETALON_CONSTANT uint kTextureWrapVShift = 2u;
 ETALON_CONSTANT uint kTextureNearest = 16u;
 ETALON_CONSTANT uint kTextureWide = 32u;
 
 // Counters of one iteration: uints from kCountersPerIteration * iteration.
-ETALON_CONSTANT uint kCountPaths = 0u;          // entries of the path queue that this iteration traces
-ETALON_CONSTANT uint kCountShadows = 1u;        // shadow rays that its shading asked for
+ETALON_CONSTANT uint kCountPaths = 0u;    // entries of the path queue that this iteration traces
+ETALON_CONSTANT uint kCountShadows = 1u;  // shadow rays that its shading asked for
 ETALON_CONSTANT uint kCountRetriedPaths = 2u;
 ETALON_CONSTANT uint kCountRetriedShadows = 3u;
 ETALON_CONSTANT uint kCountersPerIteration = 4u;
@@ -104,34 +109,34 @@ ETALON_CONSTANT uint kBackgroundColour = 2u;
 
 // What does not change during a picture. Positions are relative to an origin near the camera, in world axes.
 struct PathFrame {
-    vec3 eye;            // the camera's position
+    vec3 eye;  // the camera's position
     float focus_distance;
-    vec3 right;          // camera axes, world
-    float film_x;        // half extent of the film along right: tangent of the half angle, or metres if orthographic
+    vec3 right;    // camera axes, world
+    float film_x;  // half extent of the film along right: tangent of the half angle, or metres if orthographic
     vec3 up;
     float film_y;
     vec3 forward;
-    float lens_radius;   // metres
+    float lens_radius;  // metres
     uint width;
     uint height;
     uint seed;
-    vec3 grid_base;      // BvhGrid
+    vec3 grid_base;  // BvhGrid
     uint max_depth;
     vec3 grid_scale;
-    uint roulette;       // 1: Russian roulette
-    vec3 bounds_min;     // of the scene
+    uint roulette;    // 1: Russian roulette
+    vec3 bounds_min;  // of the scene
     uint emitter_count;
     vec3 bounds_max;
     uint light_count;
-    vec3 sky;            // radiance of a constant environment; factor of a map
-    uint strategy_count; // kinds of light that next-event estimation chooses among
-    vec3 background;     // seen by camera rays that leave, for kBackgroundColour
+    vec3 sky;             // radiance of a constant environment; factor of a map
+    uint strategy_count;  // kinds of light that next-event estimation chooses among
+    vec3 background;      // seen by camera rays that leave, for kBackgroundColour
     uint background_mode;
-    float sky_cos;       // of the environment's rotation
+    float sky_cos;  // of the environment's rotation
     float sky_sin;
-    uint sky_width;      // texels of the map
+    uint sky_width;  // texels of the map
     uint sky_height;
-    uint cells_x;        // cells of its alias table; 0: black
+    uint cells_x;  // cells of its alias table; 0: black
     uint cells_y;
 };
 

@@ -15,11 +15,11 @@ ETALON_CONSTANT uint kPowerHeuristic = 7u;  // p, q
 ETALON_CONSTANT uint kConeSolidAngle = 8u;  // sin²
 ETALON_CONSTANT uint kFrameX = 9u;          // normal
 ETALON_CONSTANT uint kFrameY = 10u;
-ETALON_CONSTANT uint kSphere = 11u;         // origin, direction, (centre, radius)
-ETALON_CONSTANT uint kTriangle = 12u;       // corners with the origin in w, direction
-ETALON_CONSTANT uint kGgx = 13u;            // (h, alpha), (cosine i, cosine o)
-ETALON_CONSTANT uint kVndf = 14u;           // (wo, alpha), u
-ETALON_CONSTANT uint kCosine = 15u;         // u
+ETALON_CONSTANT uint kSphere = 11u;    // origin, direction, (centre, radius)
+ETALON_CONSTANT uint kTriangle = 12u;  // corners with the origin in w, direction
+ETALON_CONSTANT uint kGgx = 13u;       // (h, alpha), (cosine i, cosine o)
+ETALON_CONSTANT uint kVndf = 14u;      // (wo, alpha), u
+ETALON_CONSTANT uint kCosine = 15u;    // u
 
 struct LibCall {
     uint function;
