@@ -156,6 +156,7 @@ TEST_F(RasterCoverage, G7_planes_a_millionth_apart_keep_their_order_at_any_dista
     }
 }
 
+// (TF-2)
 TEST_F(RasterCoverage, G9a_a_scene_far_from_the_origin_looks_as_at_the_origin)
 {
     const auto picture = [&](dvec3 offset) {

@@ -1,0 +1,96 @@
+#include "engine/render/raster_targets.h"
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace etalon {
+namespace {
+
+gpu::Image make_target(gpu::Device& device, ivec2 size, VkFormat format, std::uint32_t samples, const char* name)
+{
+    const bool depth = format == kRasterDepth;
+    VkImageUsageFlags usage = depth ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT : VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+    if (samples == 1 && !depth) usage |= VK_IMAGE_USAGE_SAMPLED_BIT;
+    return {device,
+            {.format = format,
+             .width = static_cast<std::uint32_t>(size.x),
+             .height = static_cast<std::uint32_t>(size.y),
+             .samples = samples,
+             .usage = usage,
+             .name = name}};
+}
+
+void read_aovs(gpu::Device& device, RasterTargets& targets, Aovs& aovs)
+{
+    const auto normal_depth = gpu::download_as<vec4>(device, targets.aovs[0]);
+    const auto albedo_u = gpu::download_as<vec4>(device, targets.aovs[1]);
+    const auto emission_v = gpu::download_as<vec4>(device, targets.aovs[2]);
+    const auto ids = gpu::download_as<std::array<std::uint32_t, 2>>(device, targets.aovs[3]);
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+        aovs.normal.emplace_back(normal_depth[i]);
+        aovs.depth.push_back(normal_depth[i].w);
+        aovs.albedo.emplace_back(albedo_u[i]);
+        aovs.emission.emplace_back(emission_v[i]);
+        aovs.uv.emplace_back(albedo_u[i].w, emission_v[i].w);
+        aovs.object_id.push_back(ids[i][0]);
+        aovs.material_id.push_back(ids[i][1]);
+    }
+}
+
+}  // namespace
+
+RasterTargets make_targets(gpu::Device& device, ivec2 size, std::uint32_t samples, bool aovs)
+{
+    RasterTargets targets;
+    if (samples > 1) targets.color = make_target(device, size, kRasterColor, samples, "colour samples");
+    targets.depth = make_target(device, size, kRasterDepth, samples, "depth samples");
+    targets.resolved = make_target(device, size, kRasterColor, 1, "picture");
+    if (!aovs) return targets;
+    for (std::size_t i = 0; i < kRasterAovTargets; ++i)
+        targets.aovs[i] = make_target(device, size, i + 1 == kRasterAovTargets ? kRasterIds : kRasterColor, 1, "AOVs");
+    targets.aov_depth = make_target(device, size, kRasterDepth, 1, "AOV depth");
+    return targets;
+}
+
+Film read_targets(gpu::Device& device, RasterTargets& targets)
+{
+    const std::vector<vec4> pixels = gpu::download_as<vec4>(device, targets.resolved);
+    Film film;
+    film.width = static_cast<int>(targets.resolved.width());
+    film.height = static_cast<int>(targets.resolved.height());
+    film.mean.reserve(pixels.size());
+    film.alpha.reserve(pixels.size());
+    for (const vec4& pixel : pixels) {
+        film.mean.emplace_back(pixel.x, pixel.y, pixel.z);
+        film.alpha.push_back(pixel.w);
+        if (!is_finite(dvec3(film.mean.back()))) ++film.nonfinite;
+    }
+    if (targets.has_aovs()) read_aovs(device, targets, film.aovs);
+    return film;
+}
+
+gpu::Image upload_picture(gpu::Device& device, const Image& picture, const char* name)
+{
+    const Image& source = picture.values.empty() ? Image(1, 1, 4) : picture;
+    std::vector<float> texels;
+    if (source.channels != 4) {
+        texels.reserve(source.pixel_count() * 4);
+        for (int y = 0; y < source.height; ++y)
+            for (int x = 0; x < source.width; ++x) {
+                for (int c = 0; c < 3; ++c) texels.push_back(source.at(x, y, c));
+                texels.push_back(1);
+            }
+    }
+    gpu::Image image(device, {.format = kRasterColor,
+                              .width = static_cast<std::uint32_t>(source.width),
+                              .height = static_cast<std::uint32_t>(source.height),
+                              .usage = VK_IMAGE_USAGE_SAMPLED_BIT,
+                              .name = name});
+    const std::array<gpu::ImagePart, 1> part{
+        {{.texels = std::as_bytes(std::span<const float>(texels.empty() ? source.values : texels))}}};
+    gpu::upload(device, image, part);
+    return image;
+}
+
+}  // namespace etalon
