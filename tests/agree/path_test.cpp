@@ -109,13 +109,13 @@ INSTANTIATE_TEST_SUITE_P(
                               0.02},
                       Subject{"khronos/LightsPunctualLamp/LightsPunctualLamp.gltf",
                               {.size = {32, 32}, .spp = 2048, .max_depth = 2},
-                              0.1},
+                              0.2},
                       Subject{"khronos/MultiUVTest/MultiUVTest.glb"},
                       Subject{"khronos/TextureTransformTest/TextureTransformTest.gltf"},
                       Subject{"khronos/VertexColorTest/VertexColorTest.glb"},
                       Subject{"interiors-converted/bathroom/bathroom.glb",
                               {.size = {32, 24}, .spp = 2048, .max_depth = 4},
-                              0.3,
+                              0.5,
                               "BulbGlass"}),
     test_name);
 

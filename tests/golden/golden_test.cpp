@@ -16,7 +16,10 @@
 
 namespace etalon::golden {
 
-void PrintTo(const Row& row, std::ostream* out) { *out << row.scene; }
+void PrintTo(const Row& row, std::ostream* out)
+{
+    *out << row.scene;
+}
 
 namespace {
 

@@ -6,6 +6,7 @@
 #include "engine/base/files.h"
 #include "engine/image/develop.h"
 #include "engine/image/io.h"
+#include "engine/image/mips.h"
 #include "engine/reference/reference.h"
 #include "engine/render/render.h"
 #include "engine/scene/load.h"
@@ -21,6 +22,21 @@ std::optional<std::filesystem::path> model_of(const std::string& asset)
     for (const auto& entry : std::filesystem::directory_iterator(*folder))
         if (entry.path().extension() == ".gltf" || entry.path().extension() == ".glb") return entry.path();
     return std::nullopt;
+}
+
+/// Area averages of premultiplied codes: what scaling a picture with transparency means.
+Image scaled(Image picture, ivec2 size)
+{
+    const auto scale_colour = [](Image& image, bool divide) {
+        for (std::size_t i = 0; i < image.pixel_count(); ++i) {
+            const float alpha = image.values[4 * i + 3];
+            for (std::size_t c = 0; c < 3; ++c) image.values[4 * i + c] *= divide ? (alpha > 0 ? 1 / alpha : 0) : alpha;
+        }
+    };
+    scale_colour(picture, false);
+    Image small = shrink(picture, size.x, size.y);
+    scale_colour(small, true);
+    return small;
 }
 
 Orbit orbit_of(const nlohmann::json& row)
@@ -48,6 +64,7 @@ std::vector<Scenario> scenarios()
         all.push_back({.name = row["name"],
                        .model = *model,
                        .environment = *folder / "environments" / std::string(row["environment"]),
+                       .size = ivec2(row["size"][0], row["size"][1]),
                        .orbit = orbit_of(row),
                        .show_environment = row["show_environment"],
                        .folder = *folder / std::string(row["name"]),
@@ -68,19 +85,22 @@ Image engine_picture(const Scenario& scenario, const std::string& engine)
 
 Image our_picture(gpu::Device& device, const Scenario& scenario, ivec2 size, RenderSettings settings)
 {
+    const bool rasterizes = settings.renderer == Renderer::raster || settings.renderer == Renderer::reference_raster;
     const Scene scene = load_scene(scenario.model.string());
     Environment environment;
     environment.map = std::make_shared<Image>(read_image(scenario.environment));
     // Their u is atan2(z, x)/2π + ½, a quarter turn on from ours.
-    const PosedScene posed =
-        pose(scene, {.orbit = scenario.orbit, .size = size, .environment = environment, .environment_rotation = 90});
+    const PosedScene posed = pose(scene, {.orbit = scenario.orbit,
+                                          .size = rasterizes ? scenario.size : size,
+                                          .environment = environment,
+                                          .environment_rotation = 90});
     settings.background = scenario.show_environment ? Background::environment : Background::transparent;
     const Requirements required = require(posed, settings);
     const Film film = settings.renderer == Renderer::raster      ? render_raster(device, posed, required, settings, {})
                       : settings.renderer == Renderer::reference ? reference::render_path(posed, required, settings, {})
                       : settings.renderer == Renderer::path      ? render_path(device, posed, required, settings, {})
                                                             : reference::render_raster(posed, required, settings, {});
-    return develop(film, {.tone = Tone::aces});
+    return scaled(develop(film, {.tone = Tone::aces}), size);
 }
 
 double silhouette_overlap(const Image& a, const Image& b)

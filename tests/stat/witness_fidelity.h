@@ -16,6 +16,7 @@ struct Scenario {
     std::string name;
     std::filesystem::path model;
     std::filesystem::path environment;
+    ivec2 size{0};  ///< at which the engines drew; their pictures were scaled to 512 wide afterwards
     Orbit orbit;
     bool show_environment = false;  ///< then the pictures have no silhouette
     std::filesystem::path folder;
@@ -28,7 +29,8 @@ std::vector<Scenario> scenarios();
 /// Display-referred RGBA in [0, 1] of one engine (512 pixels wide).
 Image engine_picture(const Scenario& scenario, const std::string& engine);
 
-/// Ours at `size`, ACES at exposure 0, by the renderer of `settings`.
+/// Ours by the renderer of `settings` at `size`, ACES at exposure 0. Rasterizers draw at the scenario's size first, as
+/// the engines did: their few samples a pixel make a coarse edge; path tracers average over the pixel anyway.
 Image our_picture(gpu::Device& device, const Scenario& scenario, ivec2 size, RenderSettings settings);
 
 /// Pixels covered by both (alpha above ½) over pixels covered by either.
