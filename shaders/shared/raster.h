@@ -7,21 +7,21 @@ ETALON_SHARED_BEGIN
 
 struct RasterFrame {
     mat4 clip_from_world;
-    mat3 world_from_camera;       // rotation alone
-    vec3 irradiance[9];           // E(n) of (SH-33) in the map's frame, scaled; coefficients as engine/render/environment.h
-    vec3 environment_radiance;    // of a constant environment, scaled
-    vec2 environment_turn;        // cos, sin of the environment's rotation about +Y
+    mat3 world_from_camera;  // rotation alone
+    vec3 irradiance[9];      // E(n) of (SH-33) in the map's frame, scaled; coefficients as engine/render/environment.h
+    vec3 environment_radiance;  // of a constant environment, scaled
+    vec2 environment_turn;      // cos, sin of the environment's rotation about +Y
     float environment_scale;
-    vec2 film_half;               // half extents of the view at unit distance (perspective) or in metres (orthographic)
-    vec2 size;                    // of the picture, pixels
-    vec2 depth_range;             // near, and far of an orthographic view, metres
-    uvec2 mirror_size;            // of table 0 in the environment's atlas, texels
+    vec2 film_half;     // half extents of the view at unit distance (perspective) or in metres (orthographic)
+    vec2 size;          // of the picture, pixels
+    vec2 depth_range;   // near, and far of an orthographic view, metres
+    uvec2 mirror_size;  // of table 0 in the environment's atlas, texels
     uint light_count;
     uint emitter_count;
 };
 
 // Bits of EmitterRecord::flags.
-ETALON_CONSTANT uint kEmitterFlat = 1u;      // seen by the projection of its area vector, else by a quarter of its area
+ETALON_CONSTANT uint kEmitterFlat = 1u;  // seen by the projection of its area vector, else by a quarter of its area
 ETALON_CONSTANT uint kEmitterTwoSided = 2u;
 
 /// An emissive draw or sphere as others see it (SH-39).
