@@ -33,7 +33,7 @@ TEST(RasterFaults, a_planted_error_of_one_per_cent_is_found)
         {"a light 1% too bright", "lights", [](Scene& s) { s.lights[0].intensity *= 1.01; }},
         {"a reflectance 1% too high", "cornell",
          [](Scene& s) { s.materials[0].base_color *= dvec4(1.01, 1.01, 1.01, 1); }},
-        {"a roughness 1% too high", "spheres",
+        {"a roughness 1% too high", "furnace",
          [](Scene& s) {
              for (Material& m : s.materials) m.roughness *= 1.01;
          }},
@@ -43,7 +43,7 @@ TEST(RasterFaults, a_planted_error_of_one_per_cent_is_found)
                  for (Primitive& p : mesh.primitives)
                      for (vec3& n : p.normals) n = vec3(dmat3(rotation_y(0.01)) * dvec3(n));
          }},
-        {"an environment 1% too bright", "maps", [](Scene& s) { s.roots[0].environment->scale *= 1.01; }},
+        {"an environment 1% too bright", "furnace-lambert", [](Scene& s) { s.roots[0].environment->scale *= 1.01; }},
         {"a vertex moved by a fifth of a pixel", "triangle",
          [](Scene& s) { s.meshes[0].primitives[0].positions[0].x += 0.004f; }},
     };
