@@ -154,8 +154,7 @@ dvec4 sample_mips(const MipChain& mips, const Sampler& sampler, const dvec2& uv,
     return (1 - blend) * a + blend * sample_level(mips, sampler, sampler.min, uv, coarse);
 }
 
-TextureSet::TextureSet(const Scene& scene, const std::vector<bool>& used, bool mipmaps)
-    : scene_(&scene)
+TextureSet::TextureSet(const Scene& scene, const std::vector<bool>& used, bool mipmaps) : scene_(&scene)
 {
     by_texture_.resize(scene.textures.size(), {nullptr, nullptr});
     const auto add = [&](const TextureUse& use, Coding coding) {

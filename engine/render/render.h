@@ -8,13 +8,14 @@
 
 namespace etalon {
 
-/// The Vulkan rasterizer: docs/shading.md §4. Film::variance is empty: its error is measured by comparison, not by samples.
-Film render_raster(gpu::Device& device, const PosedScene& posed, const Requirements& required, const RenderSettings& settings,
-                   const Progress& progress);
+/// The Vulkan rasterizer: docs/shading.md §4. Film::variance is empty: its error is measured by comparison, not by
+/// samples.
+Film render_raster(gpu::Device& device, const PosedScene& posed, const Requirements& required,
+                   const RenderSettings& settings, const Progress& progress);
 
 /// The Vulkan compute path tracer: docs/shading.md §3. Bounded work per submit; stops after the current pass when
 /// `progress` says so and returns what it has.
-Film render_path(gpu::Device& device, const PosedScene& posed, const Requirements& required, const RenderSettings& settings,
-                 const Progress& progress);
+Film render_path(gpu::Device& device, const PosedScene& posed, const Requirements& required,
+                 const RenderSettings& settings, const Progress& progress);
 
 }  // namespace etalon

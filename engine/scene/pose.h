@@ -75,7 +75,7 @@ struct PoseSettings {
 };
 
 /// Flattens the node forest, picks or frames the camera, and adds the neutral studio environment where the scene has no
-/// light of its own (no environment, no punctual light, no emission).
+/// light of its own: no environment, no punctual light, and no emission but textures of ordinary strength (at most 1).
 PosedScene pose(const Scene& scene, const PoseSettings& settings = {});
 
 /// The neutral studio: an equirectangular map with a mean radiance near 1 nit, soft key from above.

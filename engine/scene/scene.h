@@ -23,7 +23,8 @@ enum class Topology { points, lines, triangles };
 struct Primitive {
     Topology topology = Topology::triangles;
     std::vector<vec3> positions;
-    std::vector<vec3> normals;   ///< unit; computed flat when the file has none (then has_normals is false)
+    std::vector<vec3> normals;   ///< unit; computed flat when the file has none (has_normals false);
+                                 ///< empty for points and lines without them, which are drawn unlit
     std::vector<vec4> tangents;  ///< xyz unit, w = ±1 the bitangent's sign; filled where a normal map needs them
     std::array<std::vector<vec2>, 2> uv;  ///< TEXCOORD_0, TEXCOORD_1; v = 0 is the top row of the texture
     std::vector<vec4> colors;             ///< COLOR_0, linear; multiplies base colour and alpha

@@ -117,7 +117,8 @@ TEST(Bsdf, densities_integrate_to_one_less_the_draws_that_are_dropped)
                 kept += sample(bsdf, wo, {random.uniform(), random.uniform(), random.uniform()}).has_value();
             const double share = static_cast<double>(kept) / kDraws;
             // Five standard errors of the share, and the quadrature's own error.
-            EXPECT_NEAR(total, share, 5 * std::sqrt(share * (1 - share) / kDraws) + 4e-3) << model.name << " at " << theta;
+            EXPECT_NEAR(total, share, 5 * std::sqrt(share * (1 - share) / kDraws) + 4e-3)
+                << model.name << " at " << theta;
         }
 }
 
