@@ -4,3 +4,11 @@ extern "C" int dlclose(void*)
 {
     return 0;
 }
+
+// The validation layer (1.3.239) loses objects of its own whenever a device dies: 929225 bytes in 1942 pieces over the
+// device tests, every one with the layer in its stack. Objects that we fail to destroy do not hide behind it: the layer
+// names each at vkDestroyDevice, and the tests fail on any message.
+extern "C" const char* __lsan_default_suppressions()
+{
+    return "leak:libVkLayer_khronos_validation.so\n";
+}
