@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "engine/base/error.h"
+#include "engine/image/mips.h"
 #include "engine/render/material.h"
 #include "engine/render/render.h"
 
@@ -114,7 +115,15 @@ void RasterScene::add_environment()
     if (settings_.background != Background::environment || !shines || !required_.has(Feature::visible_background))
         return;
     background_ = &pipelines_.get(variants_.background());
-    environment_map_ = upload_picture(device_, mapped ? *environment.map : Image(), "environment");
+    const int most = static_cast<int>(std::min(device_.limits().image_side, 1u << 15));
+    const bool too_large = mapped && (environment.map->width > most || environment.map->height > most);
+    if (too_large)
+        environment_map_ = upload_picture(device_,
+                                          shrink(*environment.map, std::min(environment.map->width, most),
+                                                 std::min(environment.map->height, most), settings_.threads),
+                                          "environment");
+    else
+        environment_map_ = upload_picture(device_, mapped ? *environment.map : Image(), "environment");
     background_map_ = {device_, background_->layout(), {{0, environment_map_}}, 1};
 }
 
