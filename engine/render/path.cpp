@@ -1,6 +1,9 @@
 #include "engine/render/path.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cmath>
 
@@ -428,7 +431,9 @@ const std::vector<KernelTime>& PathTracer::kernel_times() const
 Film render_path(gpu::Device& device, const PosedScene& posed, const Requirements& required,
                  const RenderSettings& settings, const Progress& progress)
 {
+    const auto begin = std::chrono::steady_clock::now();
     PathTracer tracer(device, posed, required, settings, progress);
+    const double preparing = seconds_since(begin);
     auto last_report = std::chrono::steady_clock::now();
     ProgressUpdate update;
     update.stage = "path tracing";
@@ -445,7 +450,11 @@ Film render_path(gpu::Device& device, const PosedScene& posed, const Requirement
         }
         progress.report(update);
     }
-    return tracer.film();
+    const double tracing = seconds_since(begin) - preparing;
+    Film film = tracer.film();
+    film.metadata["milliseconds.scene"] = fmt::format("{:.3f}", 1e3 * preparing);
+    film.metadata["milliseconds.path tracing"] = fmt::format("{:.3f}", 1e3 * tracing);
+    return film;
 }
 
 }  // namespace etalon

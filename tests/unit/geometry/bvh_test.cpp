@@ -294,6 +294,19 @@ TEST(Bvh, G22_boxes_that_are_empty_or_not_finite_are_dropped_and_counted)
     EXPECT_EQ(build_bvh({}).nodes.size(), 1u) << "an empty scene still has a root";
 }
 
+TEST(Bvh, nasty_triangles_are_found_wherever_they_are_finite)
+{
+    std::vector<Triangle> triangles = soup(200, 0.1f, 41);
+    for (const nasty::Triangle& nasty : nasty::triangles()) triangles.push_back(nasty.positions);
+    const std::vector<Box> boxes = boxes_of(triangles);
+    const Bvh bvh = build_bvh(boxes);
+    EXPECT_EQ(bvh.order.size(), boxes.size());
+    EXPECT_EQ(bvh.dropped, 0u);
+    expect_contains_all(bvh, boxes);
+    for (const Ray& ray : rays_through(bvh.bounds, 500, 42))
+        EXPECT_EQ(traverse(bvh, triangles, ray).t, nearest(triangles, ray));
+}
+
 TEST(Bvh, stack_need_is_never_exceeded)
 {
     const std::vector<Triangle> triangles = soup(3000, 0.4f, 21);
