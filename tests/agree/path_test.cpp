@@ -15,8 +15,6 @@ struct Subject {
     std::string name;  ///< built-in scene, or a file of the shared assets
     Shot shot{};
     double must_find = 0.01;  ///< relative difference of the whole picture that the test finds with probability 0.9
-    std::string
-        clear{};  ///< a material made invisible: its transmission is not modelled yet, and the lamps are behind it
 };
 
 void PrintTo(const Subject& subject, std::ostream* out)
