@@ -123,11 +123,13 @@ function from_event(event) {
 }
 
 async function start() {
-  for (const run of data.runs) {
+  get("inspect").hidden = false;
+  await Promise.all(data.runs.map(async run => {
     run.values = await decode(run.radiance);
     run.errors = run.deviation ? await decode(run.deviation) : null;
+  }));
+  for (const run of data.runs)
     for (const id of ["a", "b"]) get(id).add(new Option(run.name, data.runs.indexOf(run)));
-  }
   get("b").selectedIndex = Math.min(1, data.runs.length - 1);
   view.width = data.width; view.height = data.height;
   view.style.maxWidth = `${80 * data.width / data.height}vh`;
@@ -144,7 +146,6 @@ async function start() {
     else return;
     event.preventDefault();
   });
-  get("inspect").hidden = false;
   paint();
 }
 start();
