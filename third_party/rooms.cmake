@@ -24,6 +24,8 @@ function(etalon_program target)
     if(ETALON_SANITIZE MATCHES "address")
         target_sources(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests/sanitizers/keep_loaded.cpp)
         set_target_properties(${target} PROPERTIES ENABLE_EXPORTS ON)  # dlclose must be found by the libraries
+    elseif(ETALON_SANITIZE MATCHES "thread")
+        target_sources(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests/sanitizers/thread.cpp)
     endif()
 endfunction()
 
