@@ -1,7 +1,5 @@
 #include "engine/render/path.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <bit>
 #include <chrono>
@@ -9,7 +7,6 @@
 
 #include "engine/base/error.h"
 #include "engine/render/path_kernels.h"
-#include "engine/render/render.h"
 
 namespace etalon {
 namespace {
@@ -426,35 +423,6 @@ void PathTracer::measure_kernels(bool on)
 const std::vector<KernelTime>& PathTracer::kernel_times() const
 {
     return state_->times;
-}
-
-Film render_path(gpu::Device& device, const PosedScene& posed, const Requirements& required,
-                 const RenderSettings& settings, const Progress& progress)
-{
-    const auto begin = std::chrono::steady_clock::now();
-    PathTracer tracer(device, posed, required, settings, progress);
-    const double preparing = seconds_since(begin);
-    auto last_report = std::chrono::steady_clock::now();
-    ProgressUpdate update;
-    update.stage = "path tracing";
-    // Stopped before the first pass is done, there would be nothing to show: that one is finished.
-    while (tracer.samples() < settings.spp && !(progress.stopped() && tracer.samples() > 0)) {
-        const bool passed = tracer.step(settings.spp);
-        const double done = double(tracer.samples()) + tracer.pass_fraction();
-        update.fraction = done / double(settings.spp);
-        update.samples = tracer.samples();
-        // Reading the film costs as much as a step, so the error so far is said about once a second.
-        if (passed && seconds_since(last_report) > 1) {
-            if (const auto error = estimate_error(tracer.film())) update.error = error->relative;
-            last_report = std::chrono::steady_clock::now();
-        }
-        progress.report(update);
-    }
-    const double tracing = seconds_since(begin) - preparing;
-    Film film = tracer.film();
-    film.metadata["milliseconds.scene"] = fmt::format("{:.3f}", 1e3 * preparing);
-    film.metadata["milliseconds.path tracing"] = fmt::format("{:.3f}", 1e3 * tracing);
-    return film;
 }
 
 }  // namespace etalon
