@@ -10,28 +10,6 @@
 namespace etalon {
 namespace {
 
-Feature feature_of(BsdfModel model)
-{
-    switch (model) {
-        case BsdfModel::metallic_roughness:
-            return Feature::metallic_roughness;
-        case BsdfModel::unlit:
-            return Feature::unlit;
-        case BsdfModel::lambert:
-            return Feature::lambert;
-        case BsdfModel::mirror:
-            return Feature::mirror;
-        case BsdfModel::rough_conductor:
-            return Feature::rough_conductor;
-        case BsdfModel::dielectric:
-            return Feature::dielectric;
-        case BsdfModel::rough_dielectric:
-            return Feature::rough_dielectric;
-    }
-    assume(false);
-    return Feature::count;
-}
-
 void check_model(const PosedScene& posed, const Requirements& required, Index material)
 {
     const Material& m = posed.scene->materials[material];
@@ -75,9 +53,10 @@ PathFeatures path_features(const PosedScene& posed, const Requirements& required
     out.emission = has(Feature::emission);
     out.punctual = has(Feature::punctual_lights);
     out.sky = has(Feature::environment_constant) || has(Feature::environment_map);
-    out.sky_map = has(Feature::environment_map);
-    out.thin_lens = has(Feature::thin_lens);
-    out.orthographic = has(Feature::orthographic);
+    // The rest is what the scene has: a bit too many must not change what its data mean.
+    out.sky_map = has(Feature::environment_map) && posed.environment.map != nullptr;
+    out.thin_lens = has(Feature::thin_lens) && posed.view.camera.lens.has_value();
+    out.orthographic = has(Feature::orthographic) && posed.view.camera.orthographic;
     for (std::size_t i = 0; i < posed.scene->textures.size(); ++i) {
         const Index image = posed.scene->textures[i].image;
         if (required.texture_used[i] && image != kNone && !posed.scene->images[image].is_8_bit) out.wide_texels = true;

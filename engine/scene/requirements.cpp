@@ -46,28 +46,6 @@ constexpr std::array<std::string_view, kFeatureCount> kNames = {"triangles",
                                                                 "aovs"};
 static_assert(!kNames.back().empty());
 
-Feature feature_of(BsdfModel model)
-{
-    switch (model) {
-        case BsdfModel::metallic_roughness:
-            return Feature::metallic_roughness;
-        case BsdfModel::unlit:
-            return Feature::unlit;
-        case BsdfModel::lambert:
-            return Feature::lambert;
-        case BsdfModel::mirror:
-            return Feature::mirror;
-        case BsdfModel::rough_conductor:
-            return Feature::rough_conductor;
-        case BsdfModel::dielectric:
-            return Feature::dielectric;
-        case BsdfModel::rough_dielectric:
-            return Feature::rough_dielectric;
-    }
-    assume(false);
-    return Feature::count;
-}
-
 // Does this model read the base colour (factor, texture, vertex colour), for its light or for its coverage?
 bool reads_base_color(const Material& material)
 {
@@ -209,6 +187,28 @@ std::string_view name(Feature feature)
 {
     assume(feature < Feature::count);
     return kNames[static_cast<std::size_t>(feature)];
+}
+
+Feature feature_of(BsdfModel model)
+{
+    switch (model) {
+        case BsdfModel::metallic_roughness:
+            return Feature::metallic_roughness;
+        case BsdfModel::unlit:
+            return Feature::unlit;
+        case BsdfModel::lambert:
+            return Feature::lambert;
+        case BsdfModel::mirror:
+            return Feature::mirror;
+        case BsdfModel::rough_conductor:
+            return Feature::rough_conductor;
+        case BsdfModel::dielectric:
+            return Feature::dielectric;
+        case BsdfModel::rough_dielectric:
+            return Feature::rough_dielectric;
+    }
+    assume(false);
+    return Feature::count;
 }
 
 void Requirements::set(Feature feature, std::string because)

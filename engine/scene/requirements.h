@@ -56,6 +56,9 @@ inline constexpr std::size_t kFeatureCount = static_cast<std::size_t>(Feature::c
 
 std::string_view name(Feature feature);
 
+/// The feature that a material of this model asks for.
+Feature feature_of(BsdfModel model);
+
 struct Requirements {
     std::bitset<kFeatureCount> bits;
     std::array<std::string, kFeatureCount>
