@@ -47,12 +47,15 @@ const uint kTangentAt = kUvAt + kUvTexels;
 const uint kColorAt = kTangentAt + kTangentTexels;
 const uint kAttributeStride = kColorAt + kColorTexels;
 
-// The attribute at offset `at` interpolated with weights (w.x, w.y, w.z) of the three vertices.
+// The attribute at offset `at` with weights w.y, w.z of the second and third vertex (TR-4): the form in which an attribute
+// that is the same at all three stays so to the bit (G5, R29).
 vec4 interpolate(uint primitive, uint at, vec3 w)
 {
     int first = int(kAttributeStride * primitive + at);
-    return w.x * uintBitsToFloat(imageLoad(attributes, first)) + w.y * uintBitsToFloat(imageLoad(attributes, first + 1)) +
-           w.z * uintBitsToFloat(imageLoad(attributes, first + 2));
+    vec4 a = uintBitsToFloat(imageLoad(attributes, first));
+    vec4 b = uintBitsToFloat(imageLoad(attributes, first + 1));
+    vec4 c = uintBitsToFloat(imageLoad(attributes, first + 2));
+    return a + w.y * (b - a) + w.z * (c - a);
 }
 
 #endif

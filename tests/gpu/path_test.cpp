@@ -159,6 +159,20 @@ TEST_F(PathPicture, every_kind_of_traversal_gives_the_same_bits)
     EXPECT_GT(measure(a).mean.x, 0.05);
 }
 
+TEST_F(PathPicture, R29_requirements_too_many_change_no_bit)
+{
+    for (const char* name : {"cornell", "maps"}) {
+        const Scene scene = make_builtin(name);
+        PoseSettings pose_settings;
+        pose_settings.size = ivec2(24);
+        const PosedScene posed = pose(scene, pose_settings);
+        Requirements required = require(posed, settings(4));
+        const Film needed = render_path(device(), posed, required, settings(4), {});
+        required.bits.set();
+        EXPECT_TRUE(same_film(needed, render_path(device(), posed, required, settings(4), {}))) << name;
+    }
+}
+
 TEST_F(PathPicture, odd_pictures_and_empty_scenes_render)
 {
     SceneBuilder empty("empty");
