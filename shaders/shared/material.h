@@ -59,9 +59,9 @@ ETALON_CONSTANT uint kLightDirectional = 2u;
 struct LightRecord {
     vec3 color_intensity;  // color * intensity: candela (point, spot) or lux (directional)
     uint type;
-    vec3 position;  // metres, camera-relative
-    float range;    // metres; 0: unlimited
-    vec3 direction; // in which the light travels, unit
+    vec3 position;      // metres, camera-relative
+    float range;        // metres; 0: unlimited
+    vec3 direction;     // in which the light travels, unit
     float spot_scale;   // 1 / max(1e-6, cos(inner) - cos(outer))
     float spot_offset;  // -cos(outer) * spot_scale
 };
