@@ -8,12 +8,14 @@
 #include <string>
 
 #include "engine/base/error.h"
+#include "tests/support/errors.h"
 #include "tests/support/files.h"
 
 namespace etalon {
 namespace {
 
 namespace fs = std::filesystem;
+using test::message_of;
 using test::TemporaryDirectory;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -28,20 +30,6 @@ std::string text_of(const fs::path& path)
 void put(const fs::path& path, const std::string& text)
 {
     std::ofstream(path) << text;
-}
-
-/// The message of the Error that `action` throws; fails the test when it throws none.
-template <typename Action>
-std::string message_of(const Action& action, Blame blame = Blame::input)
-{
-    try {
-        action();
-    } catch (const Error& error) {
-        EXPECT_EQ(error.blame(), blame) << error.message();
-        return error.message();
-    }
-    ADD_FAILURE() << "no Error was thrown";
-    return {};
 }
 
 TEST(ReadFile, gives_every_byte)

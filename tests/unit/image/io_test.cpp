@@ -11,6 +11,7 @@
 #include "engine/base/files.h"
 #include "engine/image/codec.h"
 #include "engine/image/develop.h"
+#include "tests/support/errors.h"
 #include "tests/support/files.h"
 #include "tests/support/nasty.h"
 #include "tests/unit/image/samples.h"
@@ -20,6 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using samples::Bytes;
+using test::message_of;
 using test::TemporaryDirectory;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -74,20 +76,6 @@ Film plain_film(int width, int height)
     film.mean.assign(film.pixel_count(), vec3(0.25f, 0.5f, 1));
     film.alpha.assign(film.pixel_count(), 1.0f);
     return film;
-}
-
-/// The message of the Error that `action` throws; fails the test when it throws none.
-template <typename Action>
-std::string message_of(const Action& action, Blame blame = Blame::input)
-{
-    try {
-        action();
-    } catch (const Error& error) {
-        EXPECT_EQ(error.blame(), blame) << error.message();
-        return error.message();
-    }
-    ADD_FAILURE() << "no Error was thrown";
-    return {};
 }
 
 TEST(WriteFilm, round_trips_every_bit_of_every_channel)
