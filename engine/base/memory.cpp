@@ -1,0 +1,75 @@
+#include "engine/base/memory.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace etalon {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::uint64_t page_bytes()
+{
+    return static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
+}
+
+/// The smallest limit in the files `name` of `group` and the groups above it, below the mount point `mount`.
+std::uint64_t smallest_limit(const fs::path& mount, const fs::path& group, const char* name)
+{
+    std::uint64_t smallest = ~std::uint64_t{0};
+    for (fs::path at = group.relative_path();; at = at.parent_path()) {
+        std::uint64_t limit = 0;
+        // Absent where the group is seen from inside its own namespace; "max" where there is none.
+        if (std::ifstream(mount / at / name) >> limit && limit > 0) smallest = std::min(smallest, limit);
+        if (at.empty()) return smallest;
+    }
+}
+
+std::uint64_t control_group_limit()
+{
+    std::uint64_t smallest = ~std::uint64_t{0};
+    std::ifstream groups("/proc/self/cgroup");  // lines "number:controllers:path"
+    for (std::string line; std::getline(groups, line);) {
+        const std::size_t first = line.find(':');
+        const std::size_t second = first == std::string::npos ? first : line.find(':', first + 1);
+        if (second == std::string::npos) continue;
+        const std::string controllers = ',' + line.substr(first + 1, second - first - 1) + ',';
+        const fs::path group = line.substr(second + 1);
+        if (controllers == ",,")
+            smallest = std::min(smallest, smallest_limit("/sys/fs/cgroup", group, "memory.max"));
+        else if (controllers.find(",memory,") != std::string::npos)
+            smallest = std::min(smallest, smallest_limit("/sys/fs/cgroup/memory", group, "memory.limit_in_bytes"));
+    }
+    return smallest;
+}
+
+}  // namespace
+
+std::uint64_t memory_of_machine()
+{
+    std::uint64_t bytes = static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) * page_bytes();
+    rlimit space{};
+    if (getrlimit(RLIMIT_AS, &space) == 0 && space.rlim_cur != RLIM_INFINITY)
+        bytes = std::min<std::uint64_t>(bytes, space.rlim_cur);
+    return std::min(bytes, control_group_limit());
+}
+
+std::uint64_t memory_held()
+{
+    std::uint64_t mapped = 0, resident = 0;
+    std::ifstream("/proc/self/statm") >> mapped >> resident;
+    return resident * page_bytes();
+}
+
+std::uint64_t memory_peak()
+{
+    rusage used{};
+    return getrusage(RUSAGE_SELF, &used) == 0 ? static_cast<std::uint64_t>(used.ru_maxrss) * 1024 : 0;
+}
+
+}  // namespace etalon
