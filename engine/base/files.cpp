@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -20,20 +21,34 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Calls again what a signal interrupted. Network disks interrupt even the calls that local ones never do.
+template <typename Call>
+auto uninterrupted(const Call& call)
+{
+    auto result = call();
+    while (result < 0 && errno == EINTR) result = call();
+    return result;
+}
+
 class File {
  public:
     explicit File(int descriptor) : descriptor_(descriptor) {}
-    ~File() { close(); }
-    File(const File&) = delete;
-    File& operator=(const File&) = delete;
+    ~File()
+    {
+        if (descriptor_ >= 0) ::close(descriptor_);
+    }
+    File(File&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+    File& operator=(File&& other) noexcept
+    {
+        std::swap(descriptor_, other.descriptor_);
+        return *this;
+    }
+    static File open(const fs::path& path, int flags, mode_t mode = 0)
+    {
+        return File(uninterrupted([&] { return ::open(path.c_str(), flags | O_CLOEXEC, mode); }));
+    }
     bool is_open() const { return descriptor_ >= 0; }
     int get() const { return descriptor_; }
-    /// 0, or errno: a network disk may report a failed write only here.
-    int close()
-    {
-        const int result = descriptor_ >= 0 ? ::close(std::exchange(descriptor_, -1)) : 0;
-        return result == 0 ? 0 : errno;
-    }
 
  private:
     int descriptor_;
@@ -51,6 +66,7 @@ Blame blame_of(int code)
         case EDQUOT:
         case EFBIG:
         case EIO:
+        case ESTALE:
         case ENOMEM:
         case ENFILE:
         case EMFILE:
@@ -73,6 +89,8 @@ std::string mend_of(int code, const fs::path& path)
         case ENOSPC:
         case EDQUOT:
             return "free some space, or write to another disk";
+        case EFBIG:
+            return "raise the limit on the size of files (ulimit -f), or write to another disk";
         default:
             return {};
     }
@@ -95,8 +113,8 @@ std::vector<std::byte> read_all(int descriptor, std::size_t expected, std::size_
     std::vector<std::byte> bytes(expected + 1);
     std::size_t filled = 0;
     for (;;) {
-        const ssize_t got = ::read(descriptor, bytes.data() + filled, bytes.size() - filled);
-        if (got < 0 && errno == EINTR) continue;
+        const ssize_t got =
+            uninterrupted([&] { return ::read(descriptor, bytes.data() + filled, bytes.size() - filled); });
         if (got < 0) throw cannot_read(path, errno);
         if (got == 0) break;
         filled += static_cast<std::size_t>(got);
@@ -135,61 +153,141 @@ std::optional<mode_t> check_target(const fs::path& target, const fs::path& path)
     return info.st_mode & 07777;
 }
 
-/// A new file in the folder of `target`, removed again unless it has been renamed.
-class Temporary {
- public:
-    Temporary(const fs::path& target, const fs::path& named) : named_(named)
-    {
-        std::random_device random;
-        // Short and without the target's name, which may already be as long as the file system allows; with its
-        // extension, by which some writers choose the format.
-        const std::string extension = target.extension().native().size() <= 16 ? target.extension().native() : "";
-        for (int attempt = 0; attempt < 100; ++attempt) {
-            path_ = target.parent_path() / fmt::format(".etalon-{:08x}{:08x}{}", random(), random(), extension);
-            file_.emplace(::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-            if (file_->is_open()) return;
-            if (errno != EEXIST) break;
-        }
-        throw cannot_write(named_, errno);
-    }
-    ~Temporary()
-    {
-        if (!renamed_) ::unlink(path_.c_str());
-    }
-    Temporary(const Temporary&) = delete;
-    Temporary& operator=(const Temporary&) = delete;
+constexpr std::string_view kTemporaryPrefix = ".etalon-";
+constexpr std::size_t kTemporaryDigits = 16;
 
-    const fs::path& path() const { return path_; }
+bool is_temporary(std::string_view name)
+{
+    return name.size() == kTemporaryPrefix.size() + kTemporaryDigits && name.starts_with(kTemporaryPrefix) &&
+           name.find_first_not_of("0123456789abcdef", kTemporaryPrefix.size()) == std::string_view::npos;
+}
+
+/// A name that no process has used before or will use again.
+fs::path temporary_in(const fs::path& folder)
+{
+    std::random_device random;
+    return folder / fmt::format("{}{:08x}{:08x}", kTemporaryPrefix, random(), random());
+}
+
+/// Whoever writes a temporary holds this lock as long as the temporary has its name; the kernel lets go of it when the
+/// process dies.
+bool lock(const File& file)
+{
+    return uninterrupted([&] { return ::flock(file.get(), LOCK_EX | LOCK_NB); }) == 0;
+}
+
+/// Removes the temporaries in `folder` whose writers have died. A living one between our opening and our unlinking
+/// loses nothing: either it holds the lock, or it has given up the name, which nobody will use again.
+void sweep(const fs::path& folder)
+{
+    std::error_code ignored;
+    for (fs::directory_iterator entry(folder, ignored), end; !ignored && entry != end; entry.increment(ignored)) {
+        const fs::path& path = entry->path();
+        if (!is_temporary(path.filename().native())) continue;
+        const File file = File::open(path, O_RDWR | O_NOFOLLOW | O_NONBLOCK);
+        struct stat info {};
+        if (file.is_open() && ::fstat(file.get(), &info) == 0 && S_ISREG(info.st_mode) && lock(file))
+            ::unlink(path.c_str());
+    }
+}
+
+/// New content on its way to a name. It has none of its own where the file system can do without, so that it vanishes
+/// with its process.
+class Replacement {
+ public:
+    Replacement(const fs::path& target, const fs::path& named)
+        : target_(target),
+          folder_(target.parent_path().empty() ? fs::path(".") : target.parent_path()),
+          named_(named),
+          file_(File::open(folder_, O_WRONLY | O_TMPFILE, 0666))
+    {
+        // Without /proc a nameless file could never be given a name.
+        if (!file_.is_open() || ::access(link_source().c_str(), F_OK) != 0)
+            open_by_name();
+        else
+            lock(file_);
+    }
+    ~Replacement()
+    {
+        if (!path_.empty()) ::unlink(path_.c_str());
+    }
+    Replacement(const Replacement&) = delete;
+    Replacement& operator=(const Replacement&) = delete;
 
     void write(std::span<const std::byte> bytes)
     {
         while (!bytes.empty()) {
-            const ssize_t put = ::write(file_->get(), bytes.data(), bytes.size());
-            if (put < 0 && errno == EINTR) continue;
+            const ssize_t put = uninterrupted([&] { return ::write(file_.get(), bytes.data(), bytes.size()); });
             if (put < 0) throw cannot_write(named_, errno);
             bytes = bytes.subspan(static_cast<std::size_t>(put));
         }
     }
 
-    void rename_to(const fs::path& target, std::optional<mode_t> mode)
+    /// Puts it in place of the target, which has permissions `mode` or does not exist.
+    void take_place(std::optional<mode_t> mode)
     {
-        if (mode && ::fchmod(file_->get(), *mode) != 0) throw cannot_write(named_, errno);
+        if (mode && ::fchmod(file_.get(), *mode) != 0) throw cannot_write(named_, errno);
         // EINVAL: a file system without fsync, on which nothing more can be promised.
-        if (::fsync(file_->get()) != 0 && errno != EINVAL) throw cannot_write(named_, errno);
-        if (const int code = file_->close()) throw cannot_write(named_, code);
-        if (::rename(path_.c_str(), target.c_str()) != 0) throw cannot_write(named_, errno);
-        renamed_ = true;
-        // The rename itself survives a power cut only once its folder is on disk; the data are safe either way.
-        const fs::path folder = target.parent_path().empty() ? "." : target.parent_path();
-        const File opened(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-        if (opened.is_open()) static_cast<void>(::fsync(opened.get()));
+        if (uninterrupted([&] { return ::fsync(file_.get()); }) != 0 && errno != EINVAL)
+            throw cannot_write(named_, errno);
+        if (path_.empty() && !mode && link_to(target_)) return sync_folder();
+        if (path_.empty()) {  // only a file with a name can take the place of another
+            sweep(folder_);
+            fs::path name = temporary_in(folder_);
+            if (!link_to(name)) throw cannot_write(named_, errno);
+            path_ = std::move(name);
+        }
+        if (uninterrupted([&] { return ::rename(path_.c_str(), target_.c_str()); }) != 0)
+            throw cannot_write(named_, errno);
+        path_.clear();
+        sync_folder();
     }
 
  private:
-    fs::path path_;
+    std::string link_source() const { return fmt::format("/proc/self/fd/{}", file_.get()); }
+
+    void open_by_name()
+    {
+        sweep(folder_);
+        for (int attempt = 0; attempt < 100; ++attempt) {
+            const fs::path name = temporary_in(folder_);
+            File file = File::open(name, O_WRONLY | O_CREAT | O_EXCL, 0666);
+            if (!file.is_open() && errno == EEXIST) continue;
+            if (!file.is_open()) throw cannot_write(named_, errno);
+            file_ = std::move(file);
+            path_ = name;
+            if (!is_swept()) return;
+            ::unlink(std::exchange(path_, {}).c_str());
+        }
+        throw cannot_write(named_, EEXIST);
+    }
+
+    /// Whether a sweep took it for a dead one's before the lock was ours. Where there are no locks nothing sweeps.
+    bool is_swept() const
+    {
+        struct stat info {};
+        return lock(file_) ? ::fstat(file_.get(), &info) == 0 && info.st_nlink == 0 : errno == EWOULDBLOCK;
+    }
+
+    bool link_to(const fs::path& name) const
+    {
+        const std::string source = link_source();
+        return uninterrupted(
+                   [&] { return ::linkat(AT_FDCWD, source.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW); }) == 0;
+    }
+
+    /// The new name survives a power cut only once its folder is on disk; the data are safe either way.
+    void sync_folder() const
+    {
+        const File folder = File::open(folder_, O_RDONLY | O_DIRECTORY);
+        if (folder.is_open()) static_cast<void>(uninterrupted([&] { return ::fsync(folder.get()); }));
+    }
+
+    fs::path target_;
+    fs::path folder_;
     fs::path named_;
-    std::optional<File> file_;
-    bool renamed_ = false;
+    File file_;
+    fs::path path_;  // its name, while it has one
 };
 
 }  // namespace
@@ -197,7 +295,7 @@ class Temporary {
 std::vector<std::byte> read_file(const fs::path& path, std::size_t max_bytes)
 {
     // O_NONBLOCK: opening a pipe that nobody writes to must not wait for ever.
-    const File file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+    const File file = File::open(path, O_RDONLY | O_NONBLOCK);
     if (!file.is_open()) throw cannot_read(path, errno);
     struct stat info {};
     if (::fstat(file.get(), &info) != 0) throw cannot_read(path, errno);
@@ -215,22 +313,13 @@ std::vector<std::byte> read_file(const fs::path& path, std::size_t max_bytes)
     }
 }
 
-void replace_file(const fs::path& path, const std::function<void(const fs::path&)>& write)
-{
-    const fs::path target = follow_links(path);
-    const std::optional<mode_t> mode = check_target(target, path);
-    Temporary temporary(target, path);
-    write(temporary.path());
-    temporary.rename_to(target, mode);
-}
-
 void replace_file(const fs::path& path, std::span<const std::byte> bytes)
 {
     const fs::path target = follow_links(path);
     const std::optional<mode_t> mode = check_target(target, path);
-    Temporary temporary(target, path);
-    temporary.write(bytes);
-    temporary.rename_to(target, mode);
+    Replacement replacement(target, path);
+    replacement.write(bytes);
+    replacement.take_place(mode);
 }
 
 void replace_file(const fs::path& path, std::string_view text)

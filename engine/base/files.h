@@ -1,7 +1,6 @@
 #pragma once
 #include <cstddef>
 #include <filesystem>
-#include <functional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -12,11 +11,13 @@ namespace etalon {
 /// `max_bytes`; Error(machine) when memory or the disk fails. Never waits on a pipe or a device.
 std::vector<std::byte> read_file(const std::filesystem::path& path, std::size_t max_bytes = std::size_t{4} << 30);
 
-/// Replaces `path` at once or not at all: `write` is given a temporary path in the same folder, which is then synced
-/// and renamed over `path`; on any failure the temporary is removed, the old file is left as it was, and Error is
-/// thrown. A symbolic link is followed and kept; an existing file keeps its permissions and is not replaced when it is
-/// write-protected; what is neither absent nor a regular file (a folder, a device) is refused.
-void replace_file(const std::filesystem::path& path, const std::function<void(const std::filesystem::path&)>& write);
+/// Replaces `path` at once or not at all: the bytes go into a file without a name in the same folder, which is synced
+/// and put into the place of `path` in one step. On any failure the old file is left as it was and Error is thrown;
+/// whoever dies on the way, even by SIGKILL, leaves the old file or the whole new one. What then may be left beside it
+/// (`.etalon-` and 16 digits, where the file system has no nameless files or death came between two system calls) goes
+/// with the next replacement in that folder; those of living processes are locked and stay. A symbolic link is
+/// followed and kept; an existing file keeps its permissions and is not replaced when it is write-protected; what is
+/// neither absent nor a regular file (a folder, a device) is refused.
 void replace_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
 void replace_file(const std::filesystem::path& path, std::string_view text);
 

@@ -1,13 +1,22 @@
 #include "engine/base/files.h"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
+#include <sys/file.h>
 #include <sys/stat.h>
+#include <sys/time.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <csignal>
 #include <cstring>
+#include <ctime>
 #include <fstream>
+#include <random>
 #include <string>
 
 #include "engine/base/error.h"
+#include "engine/base/parallel.h"
 #include "tests/support/errors.h"
 #include "tests/support/files.h"
 
@@ -88,32 +97,6 @@ TEST(ReplaceFile, makes_a_new_file_and_replaces_an_old_one)
     replace_file(folder / "a.txt", std::span<const std::byte>{});
     EXPECT_EQ(text_of(folder / "a.txt"), "");
     EXPECT_THAT(folder.names(), ElementsAre("a.txt"));
-}
-
-TEST(ReplaceFile, lets_the_caller_write_beside_the_target_under_its_extension)
-{
-    const TemporaryDirectory folder;
-    replace_file(folder / "a.exr", [&](const fs::path& temporary) {
-        EXPECT_EQ(temporary.parent_path(), folder.path());
-        EXPECT_EQ(temporary.extension(), ".exr");
-        EXPECT_FALSE(fs::exists(folder / "a.exr"));
-        put(temporary, "by callback");
-    });
-    EXPECT_EQ(text_of(folder / "a.exr"), "by callback");
-}
-
-TEST(ReplaceFile, a_failing_writer_leaves_the_old_file_and_nothing_else)
-{
-    const TemporaryDirectory folder;
-    put(folder / "a", "old");
-    EXPECT_THROW(replace_file(folder / "a",
-                              [](const fs::path& temporary) {
-                                  put(temporary, "half");
-                                  throw std::runtime_error("mid-way");
-                              }),
-                 std::runtime_error);
-    EXPECT_EQ(text_of(folder / "a"), "old");
-    EXPECT_THAT(folder.names(), ElementsAre("a"));
 }
 
 TEST(ReplaceFile, a_full_disk_leaves_the_old_file_and_nothing_else)
@@ -212,6 +195,115 @@ TEST(ReplaceFile, takes_names_as_long_as_the_file_system_allows)
     EXPECT_THAT(folder.names(), ElementsAre(name));
     EXPECT_THAT(message_of([&] { replace_file(folder / (name + "x"), std::string_view("x")); }),
                 HasSubstr("name too long"));
+}
+
+TEST(ReplaceFile, sweeps_what_dead_writers_left_and_nothing_else)
+{
+    const TemporaryDirectory folder;
+    put(folder / "a", "old");
+    put(folder / "precious", "kept");
+    put(folder / ".etalon-0123456789abcdef", "half a picture");
+    put(folder / ".etalon-00000000deadbeef", "of one who lives");
+    const int living = ::open((folder / ".etalon-00000000deadbeef").c_str(), O_WRONLY | O_CLOEXEC);
+    ASSERT_EQ(::flock(living, LOCK_EX), 0);
+    put(folder / ".etalon-0123456789ABCDEF", "not ours");
+    put(folder / ".etalon-0123456789abcdef.png", "not ours");
+    fs::create_symlink("precious", folder / ".etalon-000000000000link");
+    fs::create_symlink("precious", folder / ".etalon-0000000000000001");
+    ASSERT_EQ(::mkfifo((folder / ".etalon-0000000000000002").c_str(), 0600), 0);
+    fs::create_directory(folder / ".etalon-0000000000000003");
+
+    replace_file(folder / "a", std::string_view("new"));
+    EXPECT_THAT(folder.names(),
+                ElementsAre(".etalon-0000000000000001", ".etalon-0000000000000002", ".etalon-0000000000000003",
+                            ".etalon-000000000000link", ".etalon-00000000deadbeef", ".etalon-0123456789ABCDEF",
+                            ".etalon-0123456789abcdef.png", "a", "precious"));
+    EXPECT_EQ(text_of(folder / "precious"), "kept");
+    ::close(living);
+}
+
+/// Every byte is the same, so that one from elsewhere shows.
+bool is_whole(const std::string& text, std::size_t size)
+{
+    return text.size() == size && text.find_first_not_of(text.front()) == std::string::npos;
+}
+
+TEST(ReplaceFile, killed_at_a_hundred_random_instants_leaves_the_old_file_or_the_new_one)
+{
+    constexpr std::size_t kSize = 300000;
+    const TemporaryDirectory folder;
+    put(folder / "a", std::string(kSize, 'a'));
+    std::mt19937 random(11);
+    for (int i = 0; i < 100; ++i) {
+        const pid_t child = ::fork();
+        ASSERT_GE(child, 0);
+        if (child == 0) {
+            const std::string b(kSize, 'b'), c(kSize, 'c');
+            for (;;) {
+                replace_file(folder / "a", std::string_view(b));
+                replace_file(folder / "a", std::string_view(c));
+            }
+        }
+        const timespec delay{0, long(random() % 4'000'000)};
+        ::nanosleep(&delay, nullptr);
+        ::kill(child, SIGKILL);
+        int status = 0;
+        ASSERT_EQ(::waitpid(child, &status, 0), child);
+        ASSERT_TRUE(WIFSIGNALED(status)) << "it ended by itself";
+        ASSERT_TRUE(is_whole(text_of(folder / "a"), kSize)) << "kill " << i;
+    }
+    replace_file(folder / "a", std::string_view("the next run"));
+    EXPECT_THAT(folder.names(), ElementsAre("a"));
+}
+
+TEST(ReplaceFile, writers_of_one_file_at_once_never_show_half_of_it)
+{
+    constexpr std::size_t kSize = 100000;
+    const TemporaryDirectory folder;
+    put(folder / "a", std::string(kSize, 'a'));
+    parallel_for(
+        80,
+        [&](std::size_t i) {
+            replace_file(folder / "a", std::string_view(std::string(kSize, char('a' + i % 8))));
+            EXPECT_TRUE(is_whole(text_of(folder / "a"), kSize));
+        },
+        8);
+    EXPECT_THAT(folder.names(), ElementsAre("a"));
+}
+
+/// While it lives, a signal interrupts what waits every 100 us.
+class SignalStorm {
+ public:
+    SignalStorm()
+    {
+        struct sigaction action {};
+        action.sa_handler = [](int) {};  // and no SA_RESTART
+        ::sigaction(SIGALRM, &action, &old_);
+        const itimerval every{{0, 100}, {0, 100}};
+        ::setitimer(ITIMER_REAL, &every, nullptr);
+    }
+    ~SignalStorm()
+    {
+        const itimerval never{};
+        ::setitimer(ITIMER_REAL, &never, nullptr);
+        ::sigaction(SIGALRM, &old_, nullptr);
+    }
+    SignalStorm(const SignalStorm&) = delete;
+    SignalStorm& operator=(const SignalStorm&) = delete;
+
+ private:
+    struct sigaction old_ {};
+};
+
+TEST(ReplaceFile, and_reading_outlast_a_storm_of_signals)
+{
+    const TemporaryDirectory folder;
+    const SignalStorm storm;
+    for (int i = 0; i < 20; ++i) {
+        const std::string text(std::size_t(1) << 20, char('a' + i));
+        replace_file(folder / "a", std::string_view(text));
+        ASSERT_EQ(text_of(folder / "a"), text);
+    }
 }
 
 }  // namespace
