@@ -139,7 +139,7 @@ class Writer {
 
 void destroy_descriptor_pool(const DeviceState& state, VkDescriptorPool pool)
 {
-    state.vk.vkDestroyDescriptorPool(state.device, pool, nullptr);
+    state.vk.vkDestroyDescriptorPool(state.device, pool, state.instance.allocator);
 }
 
 Bindings::Bindings(Device& device, const Layout& layout, const std::vector<Bind>& binds, std::uint32_t set)
@@ -156,7 +156,8 @@ Bindings::Bindings(Device& device, const Layout& layout, const std::vector<Bind>
                                           .poolSizeCount = static_cast<std::uint32_t>(sizes.size()),
                                           .pPoolSizes = sizes.data()};
     VkDescriptorPool pool = VK_NULL_HANDLE;
-    check(state.vk.vkCreateDescriptorPool(state.device, &info, nullptr, &pool), "vkCreateDescriptorPool");
+    check(state.vk.vkCreateDescriptorPool(state.device, &info, state.instance.allocator, &pool),
+          "vkCreateDescriptorPool");
     pool_ = {state, pool};
     const VkDescriptorSetLayout set_layout = layout.set(set);
     const VkDescriptorSetAllocateInfo allocation{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,

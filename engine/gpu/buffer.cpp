@@ -25,12 +25,12 @@ constexpr std::uint64_t kStagingSize = std::uint64_t{16}
 
 void destroy_buffer(const DeviceState& state, VkBuffer buffer)
 {
-    state.vk.vkDestroyBuffer(state.device, buffer, nullptr);
+    state.vk.vkDestroyBuffer(state.device, buffer, state.instance.allocator);
 }
 
 void destroy_buffer_view(const DeviceState& state, VkBufferView view)
 {
-    state.vk.vkDestroyBufferView(state.device, view, nullptr);
+    state.vk.vkDestroyBufferView(state.device, view, state.instance.allocator);
 }
 
 Buffer::Buffer(Device& device, const BufferSpec& spec) : size_(std::max(spec.size, kSmallest))
@@ -43,7 +43,7 @@ Buffer::Buffer(Device& device, const BufferSpec& spec) : size_(std::max(spec.siz
                     "use a smaller picture or scene");
     const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = size_, .usage = kEveryUse};
     VkBuffer buffer = VK_NULL_HANDLE;
-    check(state.vk.vkCreateBuffer(state.device, &info, nullptr, &buffer), "vkCreateBuffer");
+    check(state.vk.vkCreateBuffer(state.device, &info, state.instance.allocator, &buffer), "vkCreateBuffer");
     buffer_ = {state, buffer};
     VkMemoryRequirements needs{};
     state.vk.vkGetBufferMemoryRequirements(state.device, buffer, &needs);
@@ -72,7 +72,7 @@ TexelView::TexelView(Device& device, const Buffer& buffer, VkFormat format, std:
                                       .offset = offset,
                                       .range = bytes};
     VkBufferView view = VK_NULL_HANDLE;
-    check(state.vk.vkCreateBufferView(state.device, &info, nullptr, &view), "vkCreateBufferView");
+    check(state.vk.vkCreateBufferView(state.device, &info, state.instance.allocator, &view), "vkCreateBufferView");
     view_ = {state, view};
 }
 

@@ -109,12 +109,12 @@ VkBufferImageCopy copy_region(const Image& image, std::uint32_t mip, std::uint32
 
 void destroy_command_pool(const DeviceState& state, VkCommandPool pool)
 {
-    state.vk.vkDestroyCommandPool(state.device, pool, nullptr);
+    state.vk.vkDestroyCommandPool(state.device, pool, state.instance.allocator);
 }
 
 void destroy_query_pool(const DeviceState& state, VkQueryPool pool)
 {
-    state.vk.vkDestroyQueryPool(state.device, pool, nullptr);
+    state.vk.vkDestroyQueryPool(state.device, pool, state.instance.allocator);
 }
 
 Commands::Commands(Device& device, std::string name) : state_(&device.state()), name_(std::move(name))
@@ -122,7 +122,8 @@ Commands::Commands(Device& device, std::string name) : state_(&device.state()), 
     const VkCommandPoolCreateInfo pool_info{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                             .queueFamilyIndex = state_->queue_family};
     VkCommandPool pool = VK_NULL_HANDLE;
-    check(state_->vk.vkCreateCommandPool(state_->device, &pool_info, nullptr, &pool), "vkCreateCommandPool");
+    check(state_->vk.vkCreateCommandPool(state_->device, &pool_info, state_->instance.allocator, &pool),
+          "vkCreateCommandPool");
     pool_ = {*state_, pool};
     const VkCommandBufferAllocateInfo allocation{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
                                                  .commandPool = pool,
@@ -303,7 +304,8 @@ void Commands::begin_region(const std::string& region)
                                          .queryType = VK_QUERY_TYPE_TIMESTAMP,
                                          .queryCount = 2 * kMaxRegions};
         VkQueryPool pool = VK_NULL_HANDLE;
-        check(state_->vk.vkCreateQueryPool(state_->device, &info, nullptr, &pool), "vkCreateQueryPool");
+        check(state_->vk.vkCreateQueryPool(state_->device, &info, state_->instance.allocator, &pool),
+              "vkCreateQueryPool");
         queries_ = {*state_, pool};
         state_->vk.vkResetQueryPool(state_->device, pool, 0, 2 * kMaxRegions);
     }

@@ -1,12 +1,11 @@
 #include "engine/gpu/device.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <fstream>
 
 #include "engine/base/error.h"
+#include "engine/base/memory.h"
 #include "engine/gpu/device_state.h"
 
 namespace etalon::gpu {
@@ -24,21 +23,9 @@ namespace {
                 "apt install mesa-vulkan-drivers");
 }
 
-/// Bytes of memory that this process can have: the machine's, or less in a container.
-std::uint64_t host_memory()
-{
-    std::uint64_t bytes =
-        static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
-    for (const char* limit : {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"}) {
-        std::uint64_t limited = 0;
-        if (std::ifstream(limit) >> limited && limited > 0) bytes = std::min(bytes, limited);  // else absent, or "max"
-    }
-    return bytes;
-}
-
 std::uint64_t default_budget(const DeviceReport& report)
 {
-    return (report.kind == DeviceKind::cpu ? host_memory() : report.memory) / 4 * 3;
+    return (report.kind == DeviceKind::cpu ? memory_of_machine() : report.memory) / 4 * 3;
 }
 
 /// Required features, and those optional ones that something in this project can use.
@@ -121,7 +108,7 @@ void DeviceState::create(const Candidate& candidate)
                                   .pQueueCreateInfos = &queue_info,
                                   .enabledExtensionCount = instance.surface != VK_NULL_HANDLE ? 1u : 0u,
                                   .ppEnabledExtensionNames = &swapchain};
-    check(instance.vk.vkCreateDevice(physical, &info, nullptr, &device), "vkCreateDevice");
+    check(instance.vk.vkCreateDevice(physical, &info, instance.allocator, &device), "vkCreateDevice");
     // volk reads one global to fill a device's table; the loader's answer is the same for every instance.
     static const bool loaded = (volkLoadInstanceOnly(instance.handle), true);
     assume(loaded);
@@ -131,7 +118,7 @@ void DeviceState::create(const Candidate& candidate)
     const VkSemaphoreTypeCreateInfo type{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO,
                                          .semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE};
     const VkSemaphoreCreateInfo semaphore{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO, .pNext = &type};
-    check(vk.vkCreateSemaphore(device, &semaphore, nullptr, &timeline), "vkCreateSemaphore");
+    check(vk.vkCreateSemaphore(device, &semaphore, instance.allocator, &timeline), "vkCreateSemaphore");
 }
 
 DeviceState::~DeviceState()
@@ -144,8 +131,8 @@ void DeviceState::release()
     if (device == VK_NULL_HANDLE) return;
     vk.vkDeviceWaitIdle(device);
     memory.reset();
-    if (timeline != VK_NULL_HANDLE) vk.vkDestroySemaphore(device, timeline, nullptr);
-    vk.vkDestroyDevice(device, nullptr);
+    if (timeline != VK_NULL_HANDLE) vk.vkDestroySemaphore(device, timeline, instance.allocator);
+    vk.vkDestroyDevice(device, instance.allocator);
     device = VK_NULL_HANDLE;
 }
 
@@ -176,10 +163,17 @@ void wait(const DeviceState& state, Ticket ticket, std::chrono::milliseconds tim
     check(result, "vkWaitSemaphores");
 }
 
-Device::Device(const DeviceOptions& options) : state_(std::make_unique<DeviceState>(options)) {}
+Device::Device(const DeviceOptions& options) : options_(options), state_(std::make_unique<DeviceState>(options)) {}
 Device::Device(Device&&) noexcept = default;
 Device& Device::operator=(Device&&) noexcept = default;
 Device::~Device() = default;
+
+void Device::renew()
+{
+    if (state_) earlier_messages_ = validation_messages();
+    state_.reset();  // before the new one: some drivers have room for one alone
+    state_ = std::make_unique<DeviceState>(options_);
+}
 
 const DeviceReport& Device::report() const
 {
@@ -256,8 +250,10 @@ void Device::wait_idle() const
 
 std::vector<std::string> Device::validation_messages() const
 {
+    std::vector<std::string> messages = earlier_messages_;
     const std::lock_guard lock(state_->instance.log.mutex);
-    return state_->instance.log.messages;
+    messages.insert(messages.end(), state_->instance.log.messages.begin(), state_->instance.log.messages.end());
+    return messages;
 }
 
 }  // namespace etalon::gpu

@@ -11,6 +11,8 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/base/error.h"
+
 namespace etalon::gpu {
 
 struct DeviceState;
@@ -38,6 +40,9 @@ struct DeviceOptions {
     /// Also hears what validation says, until the device is gone; called by whichever thread makes the faulty call.
     std::function<void(const std::string&)> on_message;
     std::optional<std::uint64_t> memory_budget;  ///< bytes; see Device::memory_budget
+    /// Every Vulkan object is made and destroyed with these; null: as the driver likes. Must outlive the Device. For
+    /// tests of a host that is out of memory.
+    const VkAllocationCallbacks* allocator = nullptr;
     /// Never maps device memory, as on a discrete GPU, also where it is the host's: for tests of that way.
     bool staged = false;
     /// To present: what the window system needs of the instance, and how it makes a surface. The Device owns the
@@ -77,6 +82,12 @@ struct DeviceLimits {
     bool wireframe = false;
 };
 
+/// A Device that was lost: nothing made on it will work again, but Device::renew may bring it back.
+class DeviceLost : public Error {
+ public:
+    using Error::Error;
+};
+
 /// Identifies a submission; submissions finish in order.
 using Ticket = std::uint64_t;
 
@@ -102,6 +113,10 @@ class Device {
     Device& operator=(Device&&) noexcept;
     ~Device();
 
+    /// After DeviceLost: the same device anew, by the same options; what validation said is kept. Everything made on
+    /// the old one must be gone. Throws as creation does; *this can then only be destroyed, assigned to or renewed.
+    void renew();
+
     const DeviceReport& report() const;                   ///< of the device in use
     const std::vector<DeviceReport>& candidates() const;  ///< of all
     const DeviceLimits& limits() const;
@@ -120,7 +135,8 @@ class Device {
     /// Whether an optimally tiled 2D image of `format` can do all of `features` with so many samples.
     bool supports(VkFormat format, VkFormatFeatureFlags features, std::uint32_t samples = 1) const;
 
-    /// Blocks until the submission has finished. Throws Error(machine) when the time is over or the device is lost.
+    /// Blocks until the submission has finished. Throws Error(machine) when the time is over, DeviceLost when the
+    /// device is lost.
     void wait(Ticket ticket, std::chrono::milliseconds timeout = std::chrono::minutes(2)) const;
     bool finished(Ticket ticket) const;
     void wait_idle() const;
@@ -135,6 +151,8 @@ class Device {
     DeviceState& state() const { return *state_; }
 
  private:
+    DeviceOptions options_;
+    std::vector<std::string> earlier_messages_;  // of validation, before renewals
     std::unique_ptr<DeviceState> state_;
 };
 

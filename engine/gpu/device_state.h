@@ -15,7 +15,7 @@ namespace etalon::gpu {
 
 /// The Vulkan name of a result: "VK_ERROR_DEVICE_LOST".
 std::string name(VkResult result);
-/// Throws Error(machine) naming the call unless the result is a success.
+/// Throws Error(machine) naming the call unless the result is a success; DeviceLost where that is why.
 void check(VkResult result, std::string_view call);
 
 /// Functions of an instance. volk keeps these in globals, which two instances would share.
@@ -57,11 +57,16 @@ struct Instance {
     std::vector<VkPhysicalDevice> physical_devices() const;
 
     MessageLog log;
+    const VkAllocationCallbacks* allocator = nullptr;
     VkInstance handle = VK_NULL_HANDLE;
     InstanceTable vk;
     VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE;
     VkSurfaceKHR surface = VK_NULL_HANDLE;
     bool validating = false;
+
+ private:
+    void create(const DeviceOptions& options);
+    void release();
 };
 
 /// One physical device as choose.cpp judged it.

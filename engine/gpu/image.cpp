@@ -39,17 +39,17 @@ void check_limits(const DeviceState& state, const ImageSpec& spec, VkImageUsageF
 
 void destroy_image(const DeviceState& state, VkImage image)
 {
-    state.vk.vkDestroyImage(state.device, image, nullptr);
+    state.vk.vkDestroyImage(state.device, image, state.instance.allocator);
 }
 
 void destroy_image_view(const DeviceState& state, VkImageView view)
 {
-    state.vk.vkDestroyImageView(state.device, view, nullptr);
+    state.vk.vkDestroyImageView(state.device, view, state.instance.allocator);
 }
 
 void destroy_sampler(const DeviceState& state, VkSampler sampler)
 {
-    state.vk.vkDestroySampler(state.device, sampler, nullptr);
+    state.vk.vkDestroySampler(state.device, sampler, state.instance.allocator);
 }
 
 std::uint32_t texel_size(VkFormat format)
@@ -108,7 +108,7 @@ Image::Image(Device& device, const ImageSpec& spec) : spec_(spec)
                                  .tiling = VK_IMAGE_TILING_OPTIMAL,
                                  .usage = usage};
     VkImage image = VK_NULL_HANDLE;
-    check(state.vk.vkCreateImage(state.device, &info, nullptr, &image), "vkCreateImage");
+    check(state.vk.vkCreateImage(state.device, &info, state.instance.allocator, &image), "vkCreateImage");
     image_ = {state, image};
     VkMemoryRequirements needs{};
     state.vk.vkGetImageMemoryRequirements(state.device, image, &needs);
@@ -133,7 +133,7 @@ void Image::make_view(Device& device)
                                      .format = spec_.format,
                                      .subresourceRange = {aspect(), 0, spec_.mips, 0, spec_.layers}};
     VkImageView view = VK_NULL_HANDLE;
-    check(state.vk.vkCreateImageView(state.device, &info, nullptr, &view), "vkCreateImageView");
+    check(state.vk.vkCreateImageView(state.device, &info, state.instance.allocator, &view), "vkCreateImageView");
     view_ = {state, view};
     set_name(state, VK_OBJECT_TYPE_IMAGE, reinterpret_cast<std::uint64_t>(handle()), spec_.name);
 }
@@ -195,7 +195,7 @@ Sampler::Sampler(Device& device, const SamplerSpec& spec)
                                    .maxAnisotropy = anisotropy,
                                    .maxLod = spec.max_lod};
     VkSampler sampler = VK_NULL_HANDLE;
-    check(state.vk.vkCreateSampler(state.device, &info, nullptr, &sampler), "vkCreateSampler");
+    check(state.vk.vkCreateSampler(state.device, &info, state.instance.allocator, &sampler), "vkCreateSampler");
     sampler_ = {state, sampler};
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <new>
 
 #include "engine/base/error.h"
 #include "engine/gpu/device_state.h"
@@ -34,9 +35,13 @@ VkBool32 VKAPI_PTR keep_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugU
                                 const VkDebugUtilsMessengerCallbackDataEXT* data, void* log)
 {
     auto& kept = *static_cast<MessageLog*>(log);
-    const std::lock_guard lock(kept.mutex);
-    kept.messages.emplace_back(data->pMessage);
-    if (kept.heard) kept.heard(kept.messages.back());
+    try {
+        const std::lock_guard lock(kept.mutex);
+        kept.messages.emplace_back(data->pMessage);
+        if (kept.heard) kept.heard(kept.messages.back());
+    } catch (const std::bad_alloc&) {
+        // The caller is C and cannot be thrown through; the layer writes to standard output too when it is told to.
+    }
     return VK_FALSE;
 }
 
@@ -122,16 +127,28 @@ void check(VkResult result, std::string_view call)
 {
     if (result >= VK_SUCCESS) return;
     const bool memory = result == VK_ERROR_OUT_OF_HOST_MEMORY || result == VK_ERROR_OUT_OF_DEVICE_MEMORY;
-    throw Error(Blame::machine, fmt::format("{} failed: {}", call, name(result)),
-                result == VK_ERROR_DEVICE_LOST ? "the driver gave up; try again, or another device (see etalon info)"
-                : memory                       ? "render a smaller picture or scene, or choose another device"
-                                               : "");
+    std::string what = fmt::format("{} failed: {}", call, name(result));
+    if (result == VK_ERROR_DEVICE_LOST)
+        throw DeviceLost(Blame::machine, std::move(what),
+                         "the driver gave up; try again, or another device (see etalon info)");
+    throw Error(Blame::machine, std::move(what),
+                memory ? "render a smaller picture or scene, or choose another device" : "");
 }
 
-Instance::Instance(const DeviceOptions& options) : validating(options.validate)
+Instance::Instance(const DeviceOptions& options) : allocator(options.allocator), validating(options.validate)
 {
     load_loader();
     log.heard = options.on_message;
+    try {
+        create(options);
+    } catch (...) {
+        release();
+        throw;
+    }
+}
+
+void Instance::create(const DeviceOptions& options)
+{
     std::vector<const char*> enabled_layers;
     std::vector<const char*> extensions;
     for (const std::string& extension : options.instance_extensions) extensions.push_back(extension.c_str());
@@ -162,22 +179,27 @@ Instance::Instance(const DeviceOptions& options) : validating(options.validate)
                                     .ppEnabledLayerNames = enabled_layers.data(),
                                     .enabledExtensionCount = static_cast<std::uint32_t>(extensions.size()),
                                     .ppEnabledExtensionNames = extensions.data()};
-    const VkResult result = vkCreateInstance(&info, nullptr, &handle);
+    const VkResult result = vkCreateInstance(&info, allocator, &handle);
     if (result == VK_ERROR_INCOMPATIBLE_DRIVER) return;  // no driver at all: an instance without devices
     check(result, "vkCreateInstance");
     load(vk, handle);
     if (validating)
-        check(vk.vkCreateDebugUtilsMessengerEXT(handle, &messages, nullptr, &messenger),
+        check(vk.vkCreateDebugUtilsMessengerEXT(handle, &messages, allocator, &messenger),
               "vkCreateDebugUtilsMessengerEXT");
     if (options.make_surface) surface = options.make_surface(handle);
 }
 
 Instance::~Instance()
 {
+    release();
+}
+
+void Instance::release()
+{
     if (handle == VK_NULL_HANDLE) return;
     if (surface != VK_NULL_HANDLE) vk.vkDestroySurfaceKHR(handle, surface, nullptr);
-    if (messenger != VK_NULL_HANDLE) vk.vkDestroyDebugUtilsMessengerEXT(handle, messenger, nullptr);
-    vk.vkDestroyInstance(handle, nullptr);
+    if (messenger != VK_NULL_HANDLE) vk.vkDestroyDebugUtilsMessengerEXT(handle, messenger, allocator);
+    vk.vkDestroyInstance(handle, allocator);
 }
 
 std::vector<VkPhysicalDevice> Instance::physical_devices() const

@@ -28,31 +28,36 @@ std::uint64_t align_up(std::uint64_t value, std::uint64_t alignment)
 
 bool Arena::take(std::uint64_t bytes, std::uint64_t alignment, std::uint64_t& offset)
 {
+    free.reserve(pieces + 2);  // between and around the pieces then handed out
     for (auto it = free.begin(); it != free.end(); ++it) {
         const auto [start, length] = *it;
+        const std::uint64_t end = start + length;
         const std::uint64_t aligned = align_up(start, alignment);
-        if (aligned + bytes > start + length) continue;
-        free.erase(it);
-        if (aligned > start) free[start] = aligned - start;
-        if (aligned + bytes < start + length) free[aligned + bytes] = start + length - aligned - bytes;
+        if (aligned + bytes > end) continue;
+        it = free.erase(it);
+        if (aligned + bytes < end) it = free.insert(it, {aligned + bytes, end - aligned - bytes});
+        if (aligned > start) free.insert(it, {start, aligned - start});
         offset = aligned;
+        ++pieces;
         return true;
     }
     return false;
 }
 
-void Arena::give_back(std::uint64_t offset, std::uint64_t bytes)
+void Arena::give_back(std::uint64_t offset, std::uint64_t bytes) noexcept
 {
-    auto [it, inserted] = free.emplace(offset, bytes);
-    assume(inserted);
-    if (const auto next = std::next(it); next != free.end() && it->first + it->second == next->first) {
-        it->second += next->second;
-        free.erase(next);
-    }
-    if (it == free.begin()) return;
-    if (const auto previous = std::prev(it); previous->first + previous->second == it->first) {
-        previous->second += it->second;
-        free.erase(it);
+    const auto next = std::lower_bound(free.begin(), free.end(), offset,
+                                       [](const Gap& gap, std::uint64_t at) { return gap.offset < at; });
+    assume(pieces-- > 0 && (next == free.end() || offset + bytes <= next->offset));
+    const bool meets_next = next != free.end() && offset + bytes == next->offset;
+    const bool meets_previous = next != free.begin() && std::prev(next)->offset + std::prev(next)->size == offset;
+    if (meets_previous) {
+        std::prev(next)->size += bytes + (meets_next ? next->size : 0);
+        if (meets_next) free.erase(next);
+    } else if (meets_next) {
+        *next = {offset, bytes + next->size};
+    } else {
+        free.insert(next, {offset, bytes});  // within what take() reserved
     }
 }
 
@@ -86,7 +91,7 @@ MemoryPool::MemoryPool(const DeviceState& state, std::uint64_t budget, bool stag
 
 MemoryPool::~MemoryPool()
 {
-    for (const auto& arena : arenas_) state_.vk.vkFreeMemory(state_.device, arena->memory, nullptr);
+    for (const auto& arena : arenas_) state_.vk.vkFreeMemory(state_.device, arena->memory, state_.instance.allocator);
 }
 
 MemoryUse MemoryPool::use() const
@@ -121,13 +126,15 @@ std::uint32_t MemoryPool::pick_type(std::uint32_t allowed, MemoryKind kind) cons
 Arena& MemoryPool::add_arena(std::uint64_t size, std::uint32_t type, bool linear, std::string_view what)
 {
     auto arena = std::make_unique<Arena>();
+    arenas_.reserve(arenas_.size() + 1);  // once there is memory of the driver's, nothing may fail but the driver
+    arena->free.reserve(2);
     const VkMemoryAllocateFlagsInfo flags{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO,
                                           .flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT};
     const VkMemoryAllocateInfo info{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
                                     .pNext = linear ? &flags : nullptr,
                                     .allocationSize = size,
                                     .memoryTypeIndex = type};
-    const VkResult result = state_.vk.vkAllocateMemory(state_.device, &info, nullptr, &arena->memory);
+    const VkResult result = state_.vk.vkAllocateMemory(state_.device, &info, state_.instance.allocator, &arena->memory);
     if (result != VK_SUCCESS)
         throw Error(Blame::machine,
                     fmt::format("the device refuses {} of memory for \"{}\" ({}); {} of a budget of {} are held",
@@ -136,12 +143,12 @@ Arena& MemoryPool::add_arena(std::uint64_t size, std::uint32_t type, bool linear
     arena->size = size;
     arena->type = type;
     arena->linear = linear;
-    arena->free[0] = size;
+    arena->free.push_back({0, size});
     arena->pool = this;
     if ((properties_.memoryTypes[type].propertyFlags & kMapped) == kMapped) {
         void* mapped = nullptr;
         const VkResult map = state_.vk.vkMapMemory(state_.device, arena->memory, 0, VK_WHOLE_SIZE, 0, &mapped);
-        if (map != VK_SUCCESS) state_.vk.vkFreeMemory(state_.device, arena->memory, nullptr);
+        if (map != VK_SUCCESS) state_.vk.vkFreeMemory(state_.device, arena->memory, state_.instance.allocator);
         check(map, "vkMapMemory");
         arena->mapped = static_cast<std::byte*>(mapped);
     }
@@ -189,7 +196,7 @@ void MemoryPool::release(Arena& arena, std::uint64_t offset, std::uint64_t size)
     use_.in_use -= size;
     if (!arena.empty()) return;
     use_.held -= arena.size;
-    state_.vk.vkFreeMemory(state_.device, arena.memory, nullptr);
+    state_.vk.vkFreeMemory(state_.device, arena.memory, state_.instance.allocator);
     std::erase_if(arenas_, [&](const auto& other) { return other.get() == &arena; });
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 // Inside engine/gpu only: arenas of device memory under one budget.
-#include <map>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -18,13 +17,19 @@ class Arena {
     std::uint32_t type = 0;
     bool linear = true;  ///< buffers and optimally tiled images never share one: bufferImageGranularity
     std::byte* mapped = nullptr;
-    std::map<std::uint64_t, std::uint64_t> free;  ///< size by offset, never two adjacent
+    struct Gap {
+        std::uint64_t offset = 0;
+        std::uint64_t size = 0;
+    };
+    std::vector<Gap> free;   ///< by offset, never two adjacent
+    std::size_t pieces = 0;  ///< handed out
     class MemoryPool* pool = nullptr;
 
     /// First fit. False when there is no room.
     bool take(std::uint64_t bytes, std::uint64_t alignment, std::uint64_t& offset);
-    void give_back(std::uint64_t offset, std::uint64_t bytes);
-    bool empty() const { return free.size() == 1 && free.begin()->second == size; }
+    /// Needs no memory: destructors do this.
+    void give_back(std::uint64_t offset, std::uint64_t bytes) noexcept;
+    bool empty() const { return pieces == 0; }
 };
 
 class MemoryPool {

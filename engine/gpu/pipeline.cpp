@@ -12,7 +12,7 @@ namespace {
 
 void destroy_shader_module(const DeviceState& state, VkShaderModule module)
 {
-    state.vk.vkDestroyShaderModule(state.device, module, nullptr);
+    state.vk.vkDestroyShaderModule(state.device, module, state.instance.allocator);
 }
 
 /// A stage as pipeline creation wants it; needed until then. Not movable: the info points into it.
@@ -28,7 +28,8 @@ class Stage {
                                             .codeSize = spec.code.size_bytes(),
                                             .pCode = spec.code.data()};
         VkShaderModule module = VK_NULL_HANDLE;
-        check(state.vk.vkCreateShaderModule(state.device, &info, nullptr, &module), "vkCreateShaderModule");
+        check(state.vk.vkCreateShaderModule(state.device, &info, state.instance.allocator, &module),
+              "vkCreateShaderModule");
         module_ = {state, module};
         specialization_ = {static_cast<std::uint32_t>(entries_.size()), entries_.data(), values_.size() * 4,
                            values_.data()};
@@ -157,8 +158,9 @@ VkPipeline create_graphics(const DeviceState& state, const GraphicsPipelineSpec&
                                             .pDynamicState = &dynamic,
                                             .layout = layout};
     VkPipeline pipeline = VK_NULL_HANDLE;
-    check(state.vk.vkCreateGraphicsPipelines(state.device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
-          "vkCreateGraphicsPipelines");
+    check(
+        state.vk.vkCreateGraphicsPipelines(state.device, VK_NULL_HANDLE, 1, &info, state.instance.allocator, &pipeline),
+        "vkCreateGraphicsPipelines");
     return pipeline;
 }
 
@@ -166,17 +168,17 @@ VkPipeline create_graphics(const DeviceState& state, const GraphicsPipelineSpec&
 
 void destroy_pipeline(const DeviceState& state, VkPipeline pipeline)
 {
-    state.vk.vkDestroyPipeline(state.device, pipeline, nullptr);
+    state.vk.vkDestroyPipeline(state.device, pipeline, state.instance.allocator);
 }
 
 void destroy_pipeline_layout(const DeviceState& state, VkPipelineLayout layout)
 {
-    state.vk.vkDestroyPipelineLayout(state.device, layout, nullptr);
+    state.vk.vkDestroyPipelineLayout(state.device, layout, state.instance.allocator);
 }
 
 void destroy_set_layout(const DeviceState& state, VkDescriptorSetLayout layout)
 {
-    state.vk.vkDestroyDescriptorSetLayout(state.device, layout, nullptr);
+    state.vk.vkDestroyDescriptorSetLayout(state.device, layout, state.instance.allocator);
 }
 
 Layout::Layout(Device& device, std::span<const Interface> stages, std::string name) : name_(std::move(name))
@@ -214,9 +216,9 @@ Layout::Layout(Device& device, std::span<const Interface> stages, std::string na
                                                    .bindingCount = static_cast<std::uint32_t>(entries.size()),
                                                    .pBindings = entries.data()};
         VkDescriptorSetLayout handle = VK_NULL_HANDLE;
-        check(state.vk.vkCreateDescriptorSetLayout(state.device, &info, nullptr, &handle),
+        check(state.vk.vkCreateDescriptorSetLayout(state.device, &info, state.instance.allocator, &handle),
               "vkCreateDescriptorSetLayout");
-        sets_.emplace_back(state, handle);
+        sets_.push_back(Owned<VkDescriptorSetLayout, destroy_set_layout>(state, handle));
         handles.push_back(handle);
     }
     const VkPushConstantRange range{push_stages_, 0, push_constants_};
@@ -226,7 +228,8 @@ Layout::Layout(Device& device, std::span<const Interface> stages, std::string na
                                           .pushConstantRangeCount = push_constants_ > 0 ? 1u : 0u,
                                           .pPushConstantRanges = &range};
     VkPipelineLayout layout = VK_NULL_HANDLE;
-    check(state.vk.vkCreatePipelineLayout(state.device, &info, nullptr, &layout), "vkCreatePipelineLayout");
+    check(state.vk.vkCreatePipelineLayout(state.device, &info, state.instance.allocator, &layout),
+          "vkCreatePipelineLayout");
     layout_ = {state, layout};
 }
 
@@ -240,8 +243,9 @@ ComputePipeline::ComputePipeline(Device& device, const ComputePipelineSpec& spec
     const VkComputePipelineCreateInfo info{
         .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO, .stage = stage.info(), .layout = layout_.handle()};
     VkPipeline pipeline = VK_NULL_HANDLE;
-    check(state.vk.vkCreateComputePipelines(state.device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
-          "vkCreateComputePipelines");
+    check(
+        state.vk.vkCreateComputePipelines(state.device, VK_NULL_HANDLE, 1, &info, state.instance.allocator, &pipeline),
+        "vkCreateComputePipelines");
     pipeline_ = {state, pipeline};
     set_name(state, VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(pipeline), spec.name);
 }

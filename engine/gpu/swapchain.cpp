@@ -31,7 +31,7 @@ Owned<VkSemaphore, destroy_semaphore> make_semaphore(const DeviceState& state)
 {
     const VkSemaphoreCreateInfo info{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO};
     VkSemaphore semaphore = VK_NULL_HANDLE;
-    check(state.vk.vkCreateSemaphore(state.device, &info, nullptr, &semaphore), "vkCreateSemaphore");
+    check(state.vk.vkCreateSemaphore(state.device, &info, state.instance.allocator, &semaphore), "vkCreateSemaphore");
     return {state, semaphore};
 }
 
@@ -54,12 +54,12 @@ struct Swapchain::Frame {
 
 void destroy_swapchain(const DeviceState& state, VkSwapchainKHR swapchain)
 {
-    state.vk.vkDestroySwapchainKHR(state.device, swapchain, nullptr);
+    state.vk.vkDestroySwapchainKHR(state.device, swapchain, state.instance.allocator);
 }
 
 void destroy_semaphore(const DeviceState& state, VkSemaphore semaphore)
 {
-    state.vk.vkDestroySemaphore(state.device, semaphore, nullptr);
+    state.vk.vkDestroySemaphore(state.device, semaphore, state.instance.allocator);
 }
 
 Swapchain::Swapchain(Device& device, std::uint32_t width, std::uint32_t height) : device_(device)
@@ -122,7 +122,8 @@ void Swapchain::resize(std::uint32_t width, std::uint32_t height)
                                         .clipped = VK_TRUE,
                                         .oldSwapchain = swapchain_.get()};
     VkSwapchainKHR swapchain = VK_NULL_HANDLE;
-    check(state.vk.vkCreateSwapchainKHR(state.device, &info, nullptr, &swapchain), "vkCreateSwapchainKHR");
+    check(state.vk.vkCreateSwapchainKHR(state.device, &info, state.instance.allocator, &swapchain),
+          "vkCreateSwapchainKHR");
     swapchain_ = Owned<VkSwapchainKHR, destroy_swapchain>(state, swapchain);
 
     const ImageSpec spec{.format = format.format, .width = width_, .height = height_, .name = "window"};

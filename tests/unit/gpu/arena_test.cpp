@@ -13,7 +13,7 @@ Arena make_arena(std::uint64_t size)
 {
     Arena arena;
     arena.size = size;
-    arena.free[0] = size;
+    arena.free.push_back({0, size});
     return arena;
 }
 
