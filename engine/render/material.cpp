@@ -6,7 +6,7 @@
 namespace etalon {
 namespace {
 
-static_assert(shared::kModelRoughDielectric == static_cast<shared::uint>(BsdfModel::rough_dielectric));
+static_assert(shared::kModelSpecularGlossiness == static_cast<shared::uint>(BsdfModel::specular_glossiness));
 
 shared::uint model_of(BsdfModel model)
 {
@@ -25,6 +25,8 @@ shared::uint model_of(BsdfModel model)
             return shared::kModelDielectric;
         case BsdfModel::rough_dielectric:
             return shared::kModelRoughDielectric;
+        case BsdfModel::specular_glossiness:
+            return shared::kModelSpecularGlossiness;
     }
     return shared::kModelMetallicRoughness;
 }
@@ -56,6 +58,52 @@ shared::TextureSlot pack(const TextureUse& use)
             .uv_set = use.uv_set == 1 ? 1u : 0u};
 }
 
+// A colour of 0 absorbs all within any distance; floats hold that as a large finite number.
+dvec3 absorption_of(const MaterialLayers& layers)
+{
+    if (std::isinf(layers.attenuation_distance)) return dvec3(0);
+    return glm::min(-glm::log(layers.attenuation_color) / layers.attenuation_distance, dvec3(1e30));
+}
+
+shared::LayerRecord pack(const MaterialLayers& layers)
+{
+    return {.specular_color = vec3(layers.specular_color),
+            .specular = static_cast<float>(layers.specular),
+            .sheen_color = vec3(layers.sheen_color),
+            .sheen_roughness = static_cast<float>(layers.sheen_roughness),
+            .absorption = vec3(absorption_of(layers)),
+            .thickness = static_cast<float>(layers.thickness),
+            .diffuse_transmission_color = vec3(layers.diffuse_transmission_color),
+            .diffuse_transmission = static_cast<float>(layers.diffuse_transmission),
+            .ior = static_cast<float>(layers.ior),
+            .dispersion = static_cast<float>(layers.dispersion),
+            .clearcoat = static_cast<float>(layers.clearcoat),
+            .clearcoat_roughness = static_cast<float>(layers.clearcoat_roughness),
+            .clearcoat_normal_scale = static_cast<float>(layers.clearcoat_normal_scale),
+            .transmission = static_cast<float>(layers.transmission),
+            .iridescence = static_cast<float>(layers.iridescence),
+            .iridescence_ior = static_cast<float>(layers.iridescence_ior),
+            .iridescence_thickness_min = static_cast<float>(layers.iridescence_thickness_min),
+            .iridescence_thickness_max = static_cast<float>(layers.iridescence_thickness_max),
+            .anisotropy = static_cast<float>(layers.anisotropy),
+            .anisotropy_cos = static_cast<float>(std::cos(layers.anisotropy_rotation)),
+            .anisotropy_sin = static_cast<float>(std::sin(layers.anisotropy_rotation)),
+            .specular_texture = pack(layers.specular_texture),
+            .specular_color_texture = pack(layers.specular_color_texture),
+            .clearcoat_texture = pack(layers.clearcoat_texture),
+            .clearcoat_roughness_texture = pack(layers.clearcoat_roughness_texture),
+            .clearcoat_normal_texture = pack(layers.clearcoat_normal_texture),
+            .sheen_color_texture = pack(layers.sheen_color_texture),
+            .sheen_roughness_texture = pack(layers.sheen_roughness_texture),
+            .transmission_texture = pack(layers.transmission_texture),
+            .thickness_texture = pack(layers.thickness_texture),
+            .iridescence_texture = pack(layers.iridescence_texture),
+            .iridescence_thickness_texture = pack(layers.iridescence_thickness_texture),
+            .anisotropy_texture = pack(layers.anisotropy_texture),
+            .diffuse_transmission_texture = pack(layers.diffuse_transmission_texture),
+            .diffuse_transmission_color_texture = pack(layers.diffuse_transmission_color_texture)};
+}
+
 }  // namespace
 
 dvec3 eye_of(const View& view)
@@ -81,7 +129,8 @@ shared::MaterialRecord pack(const Material& material)
             .metallic_roughness_texture = pack(material.metallic_roughness_texture),
             .normal_texture = pack(material.normal_texture),
             .occlusion_texture = pack(material.occlusion_texture),
-            .emissive_texture = pack(material.emissive_texture)};
+            .emissive_texture = pack(material.emissive_texture),
+            .layers = shared::kNoLayers};
 }
 
 shared::LightRecord pack(const PosedLight& posed, const dvec3& eye)
@@ -107,7 +156,19 @@ std::vector<shared::MaterialRecord> pack_materials(const Scene& scene)
 {
     std::vector<shared::MaterialRecord> records;
     records.reserve(scene.materials.size());
-    for (const Material& material : scene.materials) records.push_back(pack(material));
+    shared::uint layer_count = 0;
+    for (const Material& material : scene.materials) {
+        records.push_back(pack(material));
+        if (material.layers) records.back().layers = layer_count++;
+    }
+    return records;
+}
+
+std::vector<shared::LayerRecord> pack_layers(const Scene& scene)
+{
+    std::vector<shared::LayerRecord> records;
+    for (const Material& material : scene.materials)
+        if (material.layers) records.push_back(pack(*material.layers));
     return records;
 }
 

@@ -19,6 +19,9 @@ shared::LightRecord pack(const PosedLight& light, const dvec3& eye);
 /// One record per Scene material, in its order, so that Scene indices stay valid on the device.
 std::vector<shared::MaterialRecord> pack_materials(const Scene& scene);
 
+/// The layers of those materials that have any, in the order that MaterialRecord::layers counts.
+std::vector<shared::LayerRecord> pack_layers(const Scene& scene);
+
 /// One record per posed light that gives any light: zero intensity or zero colour is left out.
 std::vector<shared::LightRecord> pack_lights(const PosedScene& posed);
 

@@ -34,6 +34,17 @@ constexpr std::array<std::string_view, kFeatureCount> kNames = {"triangles",
                                                                 "rough_conductor",
                                                                 "dielectric",
                                                                 "rough_dielectric",
+                                                                "specular_glossiness",
+                                                                "specular",
+                                                                "clearcoat",
+                                                                "sheen",
+                                                                "transmission",
+                                                                "volume",
+                                                                "iridescence",
+                                                                "anisotropy",
+                                                                "dispersion",
+                                                                "diffuse_transmission",
+                                                                "layer_textures",
                                                                 "blinn_phong",
                                                                 "emission",
                                                                 "punctual_lights",
@@ -50,8 +61,16 @@ static_assert(!kNames.back().empty());
 bool reads_base_color(const Material& material)
 {
     return material.alpha_mode != AlphaMode::opaque || material.model == BsdfModel::metallic_roughness ||
-           material.model == BsdfModel::unlit || material.model == BsdfModel::lambert ||
-           material.model == BsdfModel::mirror;
+           material.model == BsdfModel::specular_glossiness || material.model == BsdfModel::unlit ||
+           material.model == BsdfModel::lambert || material.model == BsdfModel::mirror;
+}
+
+bool needs_tangents(const Material& material)
+{
+    const std::optional<MaterialLayers>& layers = material.layers;
+    return material.normal_texture.present() ||
+           (layers &&
+            (layers->anisotropy != 0 || (layers->clearcoat > 0 && layers->clearcoat_normal_texture.present())));
 }
 
 std::string label(std::string_view kind, std::size_t index, const std::string& name)
@@ -104,7 +123,7 @@ class Survey {
         const bool lit = surface.model != BsdfModel::unlit;
         if (primitive.has_normals && (lit || settings_.aovs)) out_.set(Feature::normals, who);
         if (!primitive.colors.empty() && reads_base_color(surface)) out_.set(Feature::vertex_colors, who);
-        if (!primitive.tangents.empty() && lit && surface.normal_texture.present()) out_.set(Feature::tangents, who);
+        if (!primitive.tangents.empty() && lit && needs_tangents(surface)) out_.set(Feature::tangents, who);
         if (settings_.aovs && !primitive.uv[0].empty()) out_.set(Feature::uv0, who);
         material(primitive.material);
     }
@@ -127,13 +146,38 @@ class Survey {
         if (emits) out_.set(Feature::emission, who);
 
         if (reads_base_color(m)) texture(m.base_color_texture, Feature::base_color_texture, who);
-        if (m.model == BsdfModel::metallic_roughness)
+        if (m.model == BsdfModel::metallic_roughness || m.model == BsdfModel::specular_glossiness)
             texture(m.metallic_roughness_texture, Feature::metallic_roughness_texture, who);
         if (lit) texture(m.normal_texture, Feature::normal_texture, who);
         // Occlusion dims the environment's light in rasterizers and nothing else (SH-36).
         if (lit && rasterizes_ && environment_shines_ && m.occlusion_strength != 0)
             texture(m.occlusion_texture, Feature::occlusion_texture, who);
         if (emits) texture(m.emissive_texture, Feature::emissive_texture, who);
+        if (m.layers) layers(*m.layers, who);
+    }
+
+    void layers(const MaterialLayers& m, const std::string& who)
+    {
+        const auto need = [&](bool present, Feature feature, std::initializer_list<const TextureUse*> textures) {
+            if (!present) return;
+            out_.set(feature, who);
+            for (const TextureUse* use : textures) texture(*use, Feature::layer_textures, who);
+        };
+        const bool textured = m.specular_texture.present() || m.specular_color_texture.present();
+        need(m.ior != 1.5 || m.specular != 1 || m.specular_color != dvec3(1) || textured, Feature::specular,
+             {&m.specular_texture, &m.specular_color_texture});
+        need(m.clearcoat > 0, Feature::clearcoat,
+             {&m.clearcoat_texture, &m.clearcoat_roughness_texture, &m.clearcoat_normal_texture});
+        need(m.sheen_color != dvec3(0), Feature::sheen, {&m.sheen_color_texture, &m.sheen_roughness_texture});
+        need(m.transmission > 0, Feature::transmission, {&m.transmission_texture});
+        need(m.volumetric(), Feature::volume, {});
+        // Path tracers measure the way through a body; the thickness is for those that cannot.
+        if (m.volumetric() && rasterizes_) texture(m.thickness_texture, Feature::layer_textures, who);
+        need(m.volumetric() && m.dispersion > 0, Feature::dispersion, {});
+        need(m.iridescence > 0, Feature::iridescence, {&m.iridescence_texture, &m.iridescence_thickness_texture});
+        need(m.anisotropy != 0, Feature::anisotropy, {&m.anisotropy_texture});
+        need(m.diffuse_transmission > 0, Feature::diffuse_transmission,
+             {&m.diffuse_transmission_texture, &m.diffuse_transmission_color_texture});
     }
 
     void texture(const TextureUse& use, Feature feature, const std::string& who)
@@ -206,6 +250,8 @@ Feature feature_of(BsdfModel model)
             return Feature::dielectric;
         case BsdfModel::rough_dielectric:
             return Feature::rough_dielectric;
+        case BsdfModel::specular_glossiness:
+            return Feature::specular_glossiness;
     }
     assume(false);
     return Feature::count;

@@ -40,6 +40,17 @@ enum class Feature : unsigned {
     rough_conductor,
     dielectric,
     rough_dielectric,
+    specular_glossiness,
+    specular,  ///< an index of refraction or KHR_materials_specular other than glTF's standard
+    clearcoat,
+    sheen,
+    transmission,
+    volume,  ///< bodies that refract and absorb
+    iridescence,
+    anisotropy,
+    dispersion,
+    diffuse_transmission,
+    layer_textures,
     blinn_phong,
     emission,  ///< some visible surface emits
     punctual_lights,

@@ -66,9 +66,70 @@ struct TextureUse {
     bool present() const { return texture != kNone; }
 };
 
-/// Which BSDF: glTF's metallic-roughness model, or one of extras.etalon.bsdf. docs/shading.md §2.
-enum class BsdfModel { metallic_roughness, unlit, lambert, mirror, rough_conductor, dielectric, rough_dielectric };
+/// Which BSDF: glTF's metallic-roughness model (with its layers), KHR_materials_pbrSpecularGlossiness, or one of
+/// extras.etalon.bsdf. docs/shading.md §2.
+enum class BsdfModel {
+    metallic_roughness,
+    unlit,
+    lambert,
+    mirror,
+    rough_conductor,
+    dielectric,
+    rough_dielectric,
+    specular_glossiness
+};
 enum class AlphaMode { opaque, mask, blend };
+
+/// What glTF's extensions add to metallic_roughness and specular_glossiness; the standard values change nothing.
+/// Textures multiply their factors; the channel read is named. docs/shading.md §2b.
+struct MaterialLayers {
+    double ior = 1.5;       ///< KHR_materials_ior; 0 means infinite: F0 = 1
+    double dispersion = 0;  ///< KHR_materials_dispersion, 20 / Abbe number
+
+    double specular = 1;  ///< KHR_materials_specular
+    dvec3 specular_color{1};
+    TextureUse specular_texture;        ///< A
+    TextureUse specular_color_texture;  ///< sRGB
+
+    double clearcoat = 0;  ///< KHR_materials_clearcoat
+    double clearcoat_roughness = 0;
+    double clearcoat_normal_scale = 1;
+    TextureUse clearcoat_texture;            ///< R
+    TextureUse clearcoat_roughness_texture;  ///< G
+    TextureUse clearcoat_normal_texture;     ///< tangent space; without it the coat has no normal map
+
+    dvec3 sheen_color{0};  ///< KHR_materials_sheen
+    double sheen_roughness = 0;
+    TextureUse sheen_color_texture;      ///< sRGB
+    TextureUse sheen_roughness_texture;  ///< A
+
+    double transmission = 0;          ///< KHR_materials_transmission
+    TextureUse transmission_texture;  ///< R
+
+    double thickness = 0;  ///< KHR_materials_volume, metres in mesh space; 0: thin-walled
+    double attenuation_distance = std::numeric_limits<double>::infinity();  ///< metres in the world
+    dvec3 attenuation_color{1};
+    TextureUse thickness_texture;  ///< G; read by rasterizers alone
+
+    double iridescence = 0;  ///< KHR_materials_iridescence
+    double iridescence_ior = 1.3;
+    double iridescence_thickness_min = 100;  ///< nanometres
+    double iridescence_thickness_max = 400;
+    TextureUse iridescence_texture;            ///< R
+    TextureUse iridescence_thickness_texture;  ///< G: from min to max; absent: max
+
+    double anisotropy = 0;           ///< KHR_materials_anisotropy, strength
+    double anisotropy_rotation = 0;  ///< radians, counter-clockwise from the tangent
+    TextureUse anisotropy_texture;   ///< RG direction (2 texel - 1), B strength
+
+    double diffuse_transmission = 0;  ///< KHR_materials_diffuse_transmission
+    dvec3 diffuse_transmission_color{1};
+    TextureUse diffuse_transmission_texture;        ///< A
+    TextureUse diffuse_transmission_color_texture;  ///< sRGB
+
+    /// Light enters a body, is refracted and absorbed: back faces are seen as its way out (SH-6).
+    bool volumetric() const { return transmission > 0 && thickness > 0; }
+};
 
 struct Material {
     std::string name;
@@ -78,7 +139,7 @@ struct Material {
     double roughness = 1;  ///< perceptual
     dvec3 emission{0};     ///< radiance, nit: factor × KHR_materials_emissive_strength
     dvec3 eta{1.5};        ///< rough_conductor: per channel; dielectrics: ior in x
-    dvec3 k{0};            ///< rough_conductor: extinction per channel
+    dvec3 k{0};            ///< rough_conductor: extinction per channel; specular_glossiness: the specular factor
     double ggx_alpha = 0;  ///< rough_conductor, rough_dielectric
     double normal_scale = 1;
     double occlusion_strength = 1;
@@ -87,10 +148,12 @@ struct Material {
     bool double_sided = false;
     bool emits_front_only = false;          ///< extras.etalon.emission "front": also where double_sided
     TextureUse base_color_texture;          ///< sRGB colour, linear alpha
-    TextureUse metallic_roughness_texture;  ///< linear; G roughness, B metallic
+    TextureUse metallic_roughness_texture;  ///< linear; G roughness, B metallic. specular_glossiness: sRGB specular,
+                                            ///< A glossiness
     TextureUse normal_texture;              ///< linear, tangent space
     TextureUse occlusion_texture;           ///< linear, R
     TextureUse emissive_texture;            ///< sRGB
+    std::optional<MaterialLayers> layers;   ///< nothing: no extension of §2b changes this material
 };
 
 enum class LightType { point, spot, directional };

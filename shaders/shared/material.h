@@ -12,6 +12,7 @@ ETALON_CONSTANT uint kModelMirror = 3u;
 ETALON_CONSTANT uint kModelRoughConductor = 4u;
 ETALON_CONSTANT uint kModelDielectric = 5u;
 ETALON_CONSTANT uint kModelRoughDielectric = 6u;
+ETALON_CONSTANT uint kModelSpecularGlossiness = 7u;  // k: specular factor, roughness: 1 - glossiness factor
 
 // Bits of MaterialRecord::flags.
 ETALON_CONSTANT uint kMaterialDoubleSided = 1u;     // lit and seen from both sides
@@ -49,6 +50,48 @@ struct MaterialRecord {
     TextureSlot normal_texture;
     TextureSlot occlusion_texture;
     TextureSlot emissive_texture;
+    uint layers;  // index of its LayerRecord; kNoLayers: none
+};
+
+ETALON_CONSTANT uint kNoLayers = 0xffffffffu;
+
+/// What glTF's extensions add to a material: docs/shading.md §2b; fields as MaterialLayers of engine/scene/scene.h.
+struct LayerRecord {
+    vec3 specular_color;
+    float specular;
+    vec3 sheen_color;
+    float sheen_roughness;
+    vec3 absorption;  // 1/m per channel: -ln(attenuation colour) / attenuation distance
+    float thickness;  // metres in mesh space; 0: thin-walled
+    vec3 diffuse_transmission_color;
+    float diffuse_transmission;
+    float ior;  // 0: infinite
+    float dispersion;
+    float clearcoat;
+    float clearcoat_roughness;
+    float clearcoat_normal_scale;
+    float transmission;
+    float iridescence;
+    float iridescence_ior;
+    float iridescence_thickness_min;  // nanometres
+    float iridescence_thickness_max;
+    float anisotropy;
+    float anisotropy_cos;  // of the rotation
+    float anisotropy_sin;
+    TextureSlot specular_texture;
+    TextureSlot specular_color_texture;
+    TextureSlot clearcoat_texture;
+    TextureSlot clearcoat_roughness_texture;
+    TextureSlot clearcoat_normal_texture;
+    TextureSlot sheen_color_texture;
+    TextureSlot sheen_roughness_texture;
+    TextureSlot transmission_texture;
+    TextureSlot thickness_texture;
+    TextureSlot iridescence_texture;
+    TextureSlot iridescence_thickness_texture;
+    TextureSlot anisotropy_texture;
+    TextureSlot diffuse_transmission_texture;
+    TextureSlot diffuse_transmission_color_texture;
 };
 
 ETALON_CONSTANT uint kLightPoint = 0u;
@@ -69,7 +112,8 @@ struct LightRecord {
 ETALON_SHARED_END
 #ifdef __cplusplus
 static_assert(sizeof(etalon::shared::TextureSlot) == 32);
-static_assert(sizeof(etalon::shared::MaterialRecord) == 84 + 5 * 32);
+static_assert(sizeof(etalon::shared::MaterialRecord) == 84 + 5 * 32 + 4);
+static_assert(sizeof(etalon::shared::LayerRecord) == 116 + 14 * 32);
 static_assert(sizeof(etalon::shared::LightRecord) == 52);
 #endif
 #endif

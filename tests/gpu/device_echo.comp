@@ -12,6 +12,7 @@ layout(scalar, set = 0, binding = 4) writeonly buffer RasterSpheres { RasterSphe
 layout(scalar, set = 0, binding = 5) writeonly buffer PathFrames { PathFrame path_frames[]; };
 layout(scalar, set = 0, binding = 6) writeonly buffer PathPushes { PathPush path_pushes[]; };
 layout(scalar, set = 0, binding = 7) writeonly buffer Emitters { EmitterRecord emitters[]; };
+layout(scalar, set = 0, binding = 8) writeonly buffer Layers { LayerRecord layers[]; };
 
 void main()
 {
@@ -42,4 +43,7 @@ void main()
     EmitterRecord emitter;
     fill_echo(emitter, n);
     emitters[i] = emitter;
+    LayerRecord layer;
+    fill_echo(layer, n);
+    layers[i] = layer;
 }

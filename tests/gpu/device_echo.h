@@ -96,6 +96,46 @@ ETALON_FUNCTION void fill_echo(ETALON_INOUT(MaterialRecord) r, uint n)
     r.normal_texture = next_slot(n);
     r.occlusion_texture = next_slot(n);
     r.emissive_texture = next_slot(n);
+    r.layers = next_uint(n);
+}
+
+ETALON_FUNCTION void fill_echo(ETALON_INOUT(LayerRecord) r, uint n)
+{
+    r.specular_color = next_vec3(n);
+    r.specular = next_float(n);
+    r.sheen_color = next_vec3(n);
+    r.sheen_roughness = next_float(n);
+    r.absorption = next_vec3(n);
+    r.thickness = next_float(n);
+    r.diffuse_transmission_color = next_vec3(n);
+    r.diffuse_transmission = next_float(n);
+    r.ior = next_float(n);
+    r.dispersion = next_float(n);
+    r.clearcoat = next_float(n);
+    r.clearcoat_roughness = next_float(n);
+    r.clearcoat_normal_scale = next_float(n);
+    r.transmission = next_float(n);
+    r.iridescence = next_float(n);
+    r.iridescence_ior = next_float(n);
+    r.iridescence_thickness_min = next_float(n);
+    r.iridescence_thickness_max = next_float(n);
+    r.anisotropy = next_float(n);
+    r.anisotropy_cos = next_float(n);
+    r.anisotropy_sin = next_float(n);
+    r.specular_texture = next_slot(n);
+    r.specular_color_texture = next_slot(n);
+    r.clearcoat_texture = next_slot(n);
+    r.clearcoat_roughness_texture = next_slot(n);
+    r.clearcoat_normal_texture = next_slot(n);
+    r.sheen_color_texture = next_slot(n);
+    r.sheen_roughness_texture = next_slot(n);
+    r.transmission_texture = next_slot(n);
+    r.thickness_texture = next_slot(n);
+    r.iridescence_texture = next_slot(n);
+    r.iridescence_thickness_texture = next_slot(n);
+    r.anisotropy_texture = next_slot(n);
+    r.diffuse_transmission_texture = next_slot(n);
+    r.diffuse_transmission_color_texture = next_slot(n);
 }
 
 ETALON_FUNCTION void fill_echo(ETALON_INOUT(LightRecord) r, uint n)
