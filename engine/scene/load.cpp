@@ -44,7 +44,7 @@ void refuse_warnings(const Scene& scene)
 Scene parse_gltf(std::span<const std::byte> bytes, const std::filesystem::path& folder, const std::string& name,
                  const LoadOptions& options)
 {
-    const CheckedGltf checked = preflight(bytes, folder);
+    const CheckedGltf checked = preflight(bytes, folder, options.limits);
     const gltf::Model model = gltf::parse_model(checked.json);
     const gltf::Source source{model, checked, folder};
     Scene scene;
