@@ -11,8 +11,11 @@ namespace etalon {
 
 namespace {
 
-constexpr std::array<std::string_view, 10> kSupported = {
+constexpr std::array<std::string_view, 21> kSupported = {
     "KHR_lights_punctual", "KHR_texture_transform", "KHR_materials_unlit", "KHR_materials_emissive_strength",
+    "KHR_materials_ior", "KHR_materials_specular", "KHR_materials_clearcoat", "KHR_materials_sheen",
+    "KHR_materials_transmission", "KHR_materials_volume", "KHR_materials_iridescence", "KHR_materials_anisotropy",
+    "KHR_materials_dispersion", "KHR_materials_diffuse_transmission", "KHR_materials_pbrSpecularGlossiness",
     "KHR_node_visibility", "KHR_mesh_quantization", "EXT_mesh_gpu_instancing", "EXT_texture_webp",
     // Listed, not chosen from: the default variant is what the file draws without the extension.
     "KHR_materials_variants",
@@ -25,12 +28,11 @@ struct Mend {
 };
 constexpr std::string_view kUncompress =
     "decode the meshes first: gltf-transform copy in.glb out.glb writes them uncompressed";
-constexpr std::array<Mend, 5> kMends = {{
+constexpr std::array<Mend, 4> kMends = {{
     {"KHR_draco_mesh_compression", kUncompress},
     {"EXT_meshopt_compression", kUncompress},
     {"KHR_meshopt_compression", kUncompress},
     {"KHR_texture_basisu", "use PNG or JPEG textures: gltf-transform ktxdecompress in.glb out.glb"},
-    {"KHR_materials_pbrSpecularGlossiness", "convert the materials: gltf-transform metalrough in.glb out.glb"},
 }};
 
 }  // namespace

@@ -23,8 +23,10 @@ double bytes_of(const Model& model, const tinygltf::Primitive& primitive)
     if (position == primitive.attributes.end()) return 0;
     const double vertices = count(position->second);
     const double indices = primitive.indices < 0 ? vertices : count(primitive.indices);
-    return static_cast<double>(primitive.attributes.size()) * sizeof(vec4) * std::min(vertices, indices) +
-           3 * sizeof(std::uint32_t) * indices;
+    const double attributes = static_cast<double>(primitive.attributes.size()) * sizeof(vec4);
+    double displacements = 0;
+    for (const auto& target : primitive.targets) displacements += static_cast<double>(target.size()) * sizeof(vec3);
+    return (attributes + displacements) * std::min(vertices, indices) + 3 * sizeof(std::uint32_t) * indices;
 }
 
 // The vertices that `indices` name, increasing, where they are under half of all: primitives of one mesh often share
@@ -51,6 +53,7 @@ class Meshes {
             out.name = in.name;
             for (std::size_t p = 0; p < in.primitives.size(); ++p)
                 convert(in.primitives[p], fmt::format("/meshes/{}/primitives/{}", m, p), out);
+            read_weights(in, fmt::format("/meshes/{}", m), out);
             scene_.meshes.push_back(std::move(out));
         }
     }
@@ -74,7 +77,6 @@ class Meshes {
             scene_.warnings.push_back(pointer + ": no POSITION: nothing is drawn");
             return;
         }
-        if (!in.targets.empty()) has_morph_targets_ = true;
         const auto mode = unrolled_mode(in.mode);
         if (!mode)
             throw fault(pointer + "/mode", fmt::format("{} [VALUE_NOT_IN_LIST]", in.mode),
@@ -84,10 +86,13 @@ class Meshes {
         const Subset used = take_used(indices, vertices);
         Primitive out;
         read_attributes(in, pointer, vertices, used, out);
+        read_influences(in, pointer, vertices, used, out);
+        read_targets(in, pointer, vertices, used, out);
         out.topology = topology_of(*mode);
         out.indices = unrolled(*mode, std::move(indices));
         out.material = material_of(in, out);
-        if (out.topology == Topology::triangles) drop_triangles_without_area(out);
+        // What moves may gain an area that it does not have at rest.
+        if (out.topology == Topology::triangles && !out.is_deformable()) drop_triangles_without_area(out);
         finish_normals(out);
         finish_tangents(in, pointer, out);
         mesh.primitives.push_back(std::move(out));
@@ -106,16 +111,8 @@ class Meshes {
             const auto found = in.attributes.find(name);
             if (found == in.attributes.end()) return {};
             const std::string at = fmt::format("{}/attributes/{}", pointer, name);
-            if (const std::size_t count = reader_.count(found->second); count != vertices)
-                throw fault(at, fmt::format("{} elements for {} positions [MESH_PRIMITIVE_UNEQUAL_ACCESSOR_COUNT]",
-                                            count, vertices));
+            check_count(found->second, vertices, at);
             return reader_.floats(found->second, components, at, used);
-        };
-        const auto triples = [](const Floats& in3) {
-            std::vector<vec3> values;
-            values.reserve(in3.count);
-            for (std::size_t i = 0; i < in3.count; ++i) values.emplace_back(in3.at(i, 0), in3.at(i, 1), in3.at(i, 2));
-            return values;
         };
         out.positions = triples(attribute("POSITION", {3}));
         out.normals = triples(attribute("NORMAL", {3}));
@@ -136,6 +133,88 @@ class Meshes {
             const float l = length(direction);
             out.tangents.emplace_back(l > 0 ? direction / l : vec3(1, 0, 0), tangent.at(i, 3) < 0 ? -1.0f : 1.0f);
         }
+    }
+
+    void check_count(int accessor, std::size_t vertices, const std::string& pointer) const
+    {
+        if (const std::size_t count = reader_.count(accessor); count != vertices)
+            throw fault(pointer, fmt::format("{} elements for {} positions [MESH_PRIMITIVE_UNEQUAL_ACCESSOR_COUNT]",
+                                             count, vertices));
+    }
+
+    static std::vector<vec3> triples(const Floats& in)
+    {
+        std::vector<vec3> values;
+        values.reserve(in.count);
+        for (std::size_t i = 0; i < in.count; ++i) values.emplace_back(in.at(i, 0), in.at(i, 1), in.at(i, 2));
+        return values;
+    }
+
+    // JOINTS_n and WEIGHTS_n, from set 0 on, as many sets as there are.
+    void read_influences(const tinygltf::Primitive& in, const std::string& pointer, std::size_t vertices,
+                         const Subset& used, Primitive& out)
+    {
+        std::size_t sets = 0;
+        while (in.attributes.contains(fmt::format("JOINTS_{}", sets)) &&
+               in.attributes.contains(fmt::format("WEIGHTS_{}", sets)))
+            ++sets;
+        out.influences_per_vertex = 4 * sets;
+        out.influences.resize(out.positions.size() * out.influences_per_vertex);
+        for (std::size_t set = 0; set < sets; ++set) {
+            const std::string joints_at = fmt::format("{}/attributes/JOINTS_{}", pointer, set);
+            const std::string weights_at = fmt::format("{}/attributes/WEIGHTS_{}", pointer, set);
+            const int joints = in.attributes.at(fmt::format("JOINTS_{}", set));
+            const int weights = in.attributes.at(fmt::format("WEIGHTS_{}", set));
+            check_count(joints, vertices, joints_at);
+            check_count(weights, vertices, weights_at);
+            const std::vector<std::uint32_t> joint = reader_.joints(joints, joints_at, used);
+            const Floats weight = reader_.floats(weights, {4}, weights_at, used);
+            for (std::size_t v = 0; v < out.positions.size(); ++v)
+                for (std::size_t i = 0; i < 4; ++i) {
+                    const float w = weight.at(v, i);
+                    if (w < 0)
+                        throw fault(weights_at,
+                                    fmt::format("vertex {} has the weight {} [ACCESSOR_WEIGHTS_NEGATIVE]", v, w));
+                    // A joint without weight may have any number in the file.
+                    if (w > 0) out.influences[v * out.influences_per_vertex + 4 * set + i] = {joint[4 * v + i], w};
+                }
+        }
+    }
+
+    void read_targets(const tinygltf::Primitive& in, const std::string& pointer, std::size_t vertices,
+                      const Subset& used, Primitive& out)
+    {
+        for (std::size_t t = 0; t < in.targets.size(); ++t) {
+            MorphTarget target;
+            for (const auto& [name, accessor] : in.targets[t]) {
+                const std::string at = fmt::format("{}/targets/{}/{}", pointer, t, name);
+                const auto read = [&] {
+                    check_count(accessor, vertices, at);
+                    return triples(reader_.floats(accessor, {3}, at, used));
+                };
+                if (name == "POSITION")
+                    target.positions = read();
+                else if (name == "NORMAL" && !out.normals.empty())
+                    target.normals = read();
+                else if (name == "TANGENT" && !out.tangents.empty())
+                    target.tangents = read();
+                else if (name != "NORMAL" && name != "TANGENT")
+                    scene_.warnings.push_back(at + ": only POSITION, NORMAL and TANGENT are morphed");
+            }
+            out.targets.push_back(std::move(target));
+        }
+    }
+
+    // One weight per target; primitives of one mesh should have equally many.
+    void read_weights(const tinygltf::Mesh& in, const std::string& pointer, Mesh& out)
+    {
+        std::size_t targets = 0;
+        for (const Primitive& primitive : out.primitives) targets = std::max(targets, primitive.targets.size());
+        out.weights = in.weights;
+        if (!out.weights.empty() && out.weights.size() != targets)
+            scene_.warnings.push_back(fmt::format("{}/weights: {} for {} morph targets [MESH_INVALID_WEIGHTS_COUNT]",
+                                                  pointer, out.weights.size(), targets));
+        out.weights.resize(targets);
     }
 
     std::vector<std::uint32_t> read_indices(const tinygltf::Primitive& in, const std::string& pointer,
@@ -159,7 +238,18 @@ class Meshes {
 
     bool wants_tangents(int material) const
     {
-        return material >= 0 && scene_.materials.at(static_cast<std::size_t>(material)).normal_texture.present();
+        return material >= 0 && tangent_use(scene_.materials.at(static_cast<std::size_t>(material))) != nullptr;
+    }
+
+    // The texture in whose space a material needs tangents, which may be none but that of uv set 0 where a brushed
+    // surface has no texture; null: it needs no tangents. The base's normal map goes before the coat's: a vertex has
+    // one tangent.
+    static const TextureUse* tangent_use(const Material& material)
+    {
+        if (material.normal_texture.present()) return &material.normal_texture;
+        if (!material.layers) return nullptr;
+        if (material.layers->clearcoat_normal_texture.present()) return &material.layers->clearcoat_normal_texture;
+        return material.layers->anisotropy > 0 ? &material.layers->anisotropy_texture : nullptr;
     }
 
     // The material's index. Points and lines without normals are drawn unlit (glTF 2.0 §3.7.2.1): in an unlit copy.
@@ -186,27 +276,24 @@ class Meshes {
 
     void finish_tangents(const tinygltf::Primitive& in, const std::string& pointer, Primitive& out)
     {
-        const TextureUse& map = scene_.materials[out.material].normal_texture;
-        if (!map.present() || out.topology != Topology::triangles || !out.tangents.empty()) return;
-        if (out.uv[static_cast<std::size_t>(map.uv_set)].empty()) {
-            scene_.warnings.push_back(
-                fmt::format("{}: material {} has a normal map, but there is no TEXCOORD_{}: it is not applied", pointer,
-                            in.material, map.uv_set));
+        const Material& material = scene_.materials[out.material];
+        const TextureUse* use = tangent_use(material);
+        if (use == nullptr || out.topology != Topology::triangles || !out.tangents.empty()) return;
+        if (out.uv[static_cast<std::size_t>(use->uv_set)].empty()) {
+            scene_.warnings.push_back(fmt::format(
+                "{}: material {} has {}, but there is no TEXCOORD_{} [MESH_PRIMITIVE_TOO_FEW_TEXCOORDS]: {}", pointer,
+                in.material, use->present() ? "a map in tangent space" : "anisotropy", use->uv_set,
+                use->present() ? "it is not applied" : "its direction is arbitrary"));
             return;
         }
-        add_tangents(out, map.uv_set);
+        add_tangents(out, use->uv_set);
     }
 
- public:
-    bool has_morph_targets() const { return has_morph_targets_; }
-
- private:
     const Source& source_;
     Scene& scene_;
     AccessorReader reader_;
     Index standard_ = kNone;
     std::map<Index, Index> unlit_copy_;
-    bool has_morph_targets_ = false;
 };
 
 }  // namespace
@@ -214,11 +301,6 @@ class Meshes {
 void import_meshes(const Source& source, Scene& scene)
 {
     const Meshes meshes(source, scene);
-    if (meshes.has_morph_targets())
-        scene.warnings.push_back("/meshes: morph targets are not applied: the base shape is drawn");
-    if (!source.model.skins.empty())
-        scene.warnings.push_back(
-            "/skins: joints are not applied: skinned meshes are drawn as stored, where their node is");
 }
 
 }  // namespace etalon::gltf

@@ -11,8 +11,8 @@ namespace {
 
 std::string name_of(BsdfModel model)
 {
-    constexpr std::array kNames = {"metallic-roughness", "unlit",      "lambert",         "mirror",
-                                   "rough-conductor",    "dielectric", "rough-dielectric"};
+    constexpr std::array kNames = {"metallic-roughness", "unlit",      "lambert",          "mirror",
+                                   "rough-conductor",    "dielectric", "rough-dielectric", "specular-glossiness"};
     return kNames[static_cast<std::size_t>(model)];
 }
 
@@ -66,7 +66,10 @@ void add_geometry(const Scene& scene, Inventory& out)
                     break;
             }
             out.geometry_bytes += bytes(p.positions) + bytes(p.normals) + bytes(p.tangents) + bytes(p.uv[0]) +
-                                  bytes(p.uv[1]) + bytes(p.colors) + bytes(p.indices);
+                                  bytes(p.uv[1]) + bytes(p.colors) + bytes(p.indices) + bytes(p.influences);
+            out.morph_targets += p.targets.size();
+            for (const MorphTarget& target : p.targets)
+                out.geometry_bytes += bytes(target.positions) + bytes(target.normals) + bytes(target.tangents);
         }
 }
 
@@ -123,7 +126,12 @@ Inventory describe(const Scene& scene)
         out.instances += node.instances.size();
     }
     out.variants = scene.variants;
-    out.animations = scene.animations;
+    for (const Animation& a : scene.animations) {
+        std::size_t keys = 0;
+        for (const AnimationSampler& sampler : a.samplers) keys += sampler.times.size();
+        out.animations.push_back({a.name, a.duration, a.channels.size(), keys});
+    }
+    for (const Skin& skin : scene.skins) out.skins.push_back({skin.name, skin.joints.size()});
     out.warnings = scene.warnings;
     return out;
 }
