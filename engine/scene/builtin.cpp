@@ -37,6 +37,20 @@ constexpr std::array kRows = {
     Row{{"thin-lens", "boxes through a lens that has one plane in focus"}, builtin::thin_lens},
 };
 
+// Made by name but not listed until all three renderers show layers.
+constexpr std::array kLayerRows = {
+    Row{{"specular", "other indices of refraction, specular strength and colour"}, builtin::specular},
+    Row{{"clearcoat", "varnish, in places, and with a normal map of its own"}, builtin::clearcoat},
+    Row{{"sheen", "satin and velvet"}, builtin::sheen},
+    Row{{"transmission", "thin panes, tinted, frosted and in stripes"}, builtin::transmission},
+    Row{{"volume", "bodies that refract and absorb"}, builtin::volume},
+    Row{{"iridescence", "thin films on plastic and metal"}, builtin::iridescence},
+    Row{{"anisotropy", "brushed metal, along, across and in circles"}, builtin::anisotropy},
+    Row{{"dispersion", "flint glass that parts colours"}, builtin::dispersion},
+    Row{{"diffuse-transmission", "a leaf, paper and stained paper before the sun"}, builtin::diffuse_transmission},
+    Row{{"specular-glossiness", "the older material model: plastic, gold, and maps"}, builtin::specular_glossiness},
+};
+
 constexpr auto kScenes = [] {
     std::array<BuiltinScene, kRows.size()> out;
     for (std::size_t i = 0; i < kRows.size(); ++i) out[i] = kRows[i].scene;
@@ -53,6 +67,8 @@ std::span<const BuiltinScene> builtin_scenes()
 Scene make_builtin(std::string_view name)
 {
     std::string names;
+    for (const Row& row : kLayerRows)
+        if (row.scene.name == name) return row.make();
     for (const Row& row : kRows) {
         if (row.scene.name == name) return row.make();
         names += fmt::format("{}{}", names.empty() ? "" : ", ", row.scene.name);

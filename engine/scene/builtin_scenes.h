@@ -24,4 +24,16 @@ Scene wires();
 Scene orthographic();
 Scene thin_lens();
 
+// builtin_layers.cpp: the layers of glTF's material extensions
+Scene specular();
+Scene clearcoat();
+Scene sheen();
+Scene transmission();
+Scene volume();
+Scene iridescence();
+Scene anisotropy();
+Scene dispersion();
+Scene diffuse_transmission();
+Scene specular_glossiness();
+
 }  // namespace etalon::builtin
