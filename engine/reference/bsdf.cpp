@@ -98,6 +98,11 @@ dvec3 fresnel_schlick(const dvec3& f0, double cosine)  // (SH-13)
     return f0 + (dvec3(1) - f0) * (x2 * x2 * x);
 }
 
+dvec3 energy_compensation(const dvec3& head_on, double share)  // (SH-53)
+{
+    return dvec3(1) + head_on * ((1 - share) / share);
+}
+
 // (SH-18) With q = η² − 1 nothing cancels as η → 1 (S10).
 double fresnel_dielectric(double cosine, double ior)
 {
@@ -153,7 +158,9 @@ dvec3 evaluate_metallic_roughness(const Bsdf& bsdf, const dvec3& wo, const dvec3
     const auto h = half_vector(wo, wi);
     if (!h) return dvec3(0);
     const dvec3 f = fresnel_schlick(bsdf.f0, dot(wo, *h));
-    return ((dvec3(1) - f) * bsdf.color / kPi + f * (ggx_d(*h, bsdf.alpha) * ggx_v(wo.z, wi.z, bsdf.alpha))) * wi.z;
+    dvec3 specular = f * (ggx_d(*h, bsdf.alpha) * ggx_v(wo.z, wi.z, bsdf.alpha));
+    if (bsdf.energy != nullptr) specular *= energy_compensation(bsdf.f0, (*bsdf.energy)(wo.z, bsdf.alpha));
+    return ((dvec3(1) - f) * bsdf.color / kPi + specular) * wi.z;
 }
 
 dvec3 evaluate_rough_conductor(const Bsdf& bsdf, const dvec3& wo, const dvec3& wi)  // (SH-17)

@@ -2,6 +2,7 @@
 #include <optional>
 
 #include "engine/math/types.h"
+#include "engine/reference/layers_albedo.h"
 #include "engine/scene/scene.h"
 
 namespace etalon::reference {
@@ -10,12 +11,13 @@ namespace etalon::reference {
 /// side; `wo` (to the viewer) has z > 0. docs/shading.md §2.
 struct Bsdf {
     BsdfModel model = BsdfModel::lambert;
-    dvec3 color{0};    ///< c_diff; ρ of lambert; reflectance of mirror
-    dvec3 f0{0};       ///< metallic_roughness
-    double alpha = 1;  ///< GGX
-    dvec3 eta{1};      ///< rough_conductor, per channel
-    dvec3 k{0};        ///< rough_conductor, per channel
-    double ior = 1;    ///< dielectrics: index on the far side / index on wo's side
+    dvec3 color{0};                      ///< c_diff; ρ of lambert; reflectance of mirror
+    dvec3 f0{0};                         ///< metallic_roughness
+    double alpha = 1;                    ///< GGX
+    dvec3 eta{1};                        ///< rough_conductor, per channel
+    dvec3 k{0};                          ///< rough_conductor, per channel
+    double ior = 1;                      ///< dielectrics: index on the far side / index on wo's side
+    const ShareTable* energy = nullptr;  ///< metallic_roughness: E of (SH-53); null: one bounce alone, M = 1
 
     /// Reflects or transmits into single directions: `evaluate` and `pdf` are 0, samples alone carry light.
     bool is_delta() const;
@@ -49,6 +51,9 @@ double ggx_v(double cos_o, double cos_i, double alpha);
 dvec3 sample_visible_normal(const dvec3& wo, double alpha, const dvec2& u);
 /// (MC-5) cosine-weighted direction, z > 0.
 dvec3 sample_cosine(const dvec2& u);
+
+/// (SH-53) M: what `share` = E leaves out of a reflectance of `head_on` is given back.
+dvec3 energy_compensation(const dvec3& head_on, double share);
 
 /// (SH-13)
 dvec3 fresnel_schlick(const dvec3& f0, double cosine);

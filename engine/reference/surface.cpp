@@ -6,7 +6,8 @@ namespace etalon::reference {
 namespace {
 
 constexpr double kUnit = std::numeric_limits<double>::epsilon() / 2;
-constexpr double kSmallestAlpha = 1e-4;  // exact models below it: D overflows long before it matters (S7)
+constexpr double kSmallestMicrofacetAlpha = 1e-3;  // (SH-14)
+constexpr double kSmallestAlpha = 1e-4;            // exact models below it: D overflows long before it matters (S7)
 
 dvec3 normalized_or(const dvec3& v, const dvec3& otherwise)
 {
@@ -36,7 +37,8 @@ World::Frame frame_of(const dmat4& world_from_object)
 
 bool is_exact_model(BsdfModel model)
 {
-    return model != BsdfModel::metallic_roughness && model != BsdfModel::unlit;
+    return model != BsdfModel::metallic_roughness && model != BsdfModel::specular_glossiness &&
+           model != BsdfModel::unlit;
 }
 
 bool is_dielectric(BsdfModel model)
@@ -44,9 +46,31 @@ bool is_dielectric(BsdfModel model)
     return model == BsdfModel::dielectric || model == BsdfModel::rough_dielectric;
 }
 
+namespace {
+
+// (SH-53) E for the alphas that a scene's materials can have.
+ShareTable ggx_share_of(const Scene& scene)
+{
+    dvec2 used(1, 0);
+    for (const Material& m : scene.materials) {
+        if (m.model != BsdfModel::metallic_roughness && m.model != BsdfModel::specular_glossiness) continue;
+        dvec2 roughness(m.roughness);
+        if (m.metallic_roughness_texture.present())
+            (m.model == BsdfModel::metallic_roughness ? roughness.x : roughness.y) =
+                m.model == BsdfModel::metallic_roughness ? 0 : 1;
+        dvec2 alpha = glm::max(roughness * roughness, dvec2(kSmallestMicrofacetAlpha));
+        if (m.layers && m.layers->anisotropy > 0) alpha.y = std::sqrt(alpha.y);  // of α and at most 1 (SH-52)
+        used = {std::min(used.x, alpha.x), std::max(used.y, alpha.y)};
+    }
+    return used.x > used.y ? ShareTable() : ShareTable(kGgxShare, used);
+}
+
+}  // namespace
+
 World::World(const PosedScene& p, const std::vector<bool>& textures_used, bool mipmaps)
     : posed(&p), index(p), textures(*p.scene, textures_used, mipmaps)
 {
+    if (!mipmaps) ggx_share = ggx_share_of(*p.scene);
     for (const Draw& draw : p.draws) frames.push_back(frame_of(draw.world_from_object));
     for (const Material& m : p.scene->materials)
         always_opaque.push_back(m.alpha_mode == AlphaMode::opaque && (m.double_sided || is_exact_model(m.model)));
@@ -108,7 +132,7 @@ Bsdf bsdf_of(const Material& m, const MaterialPoint& point, bool front)
         case BsdfModel::metallic_roughness:  // (SH-14)
             bsdf.color = point.color * (1 - point.metallic);
             bsdf.f0 = dvec3(0.04) + point.metallic * (point.color - dvec3(0.04));
-            bsdf.alpha = std::max(point.roughness * point.roughness, 1e-3);
+            bsdf.alpha = std::max(point.roughness * point.roughness, kSmallestMicrofacetAlpha);
             break;
         case BsdfModel::rough_conductor:
             bsdf.eta = m.eta;
@@ -176,6 +200,7 @@ Surface surface_at(const World& world, const Ray& ray, const Hit& hit)
     const bool emits = s.front || (material.double_sided && !material.emits_front_only);
     if (emits || material.model == BsdfModel::unlit) s.emission = s.point.emission;
     s.bsdf = bsdf_of(material, s.point, s.front);
+    s.bsdf.energy = &world.ggx_share;
     const bool black_back = !s.front && !material.double_sided && !is_dielectric(material.model);  // (SH-6)
     s.is_black = black_back || s.bsdf.is_black();
     return s;

@@ -26,6 +26,7 @@ struct World {
     const PosedScene* posed;
     SceneIndex index;
     TextureSet textures;
+    ShareTable ggx_share;             ///< for the roughnesses that occur; empty where nothing asks, and for rasterizers
     std::vector<Frame> frames;        ///< of each draw
     std::vector<bool> always_opaque;  ///< per material: stops every ray, whatever its side
 };
@@ -84,7 +85,7 @@ dvec3 emission_at(const World& world, const Ray& ray, const Hit& hit);
 /// `cull_all`: also single-sided exact models let their back through, as rasterizers do (SH-32).
 double opacity(const World& world, const Ray& ray, const Hit& hit, bool cull_all = false);
 
-/// Models that extras.etalon.bsdf names; glTF's own are metallic_roughness and unlit.
+/// Models that extras.etalon.bsdf names; glTF's own are metallic_roughness, specular_glossiness and unlit.
 bool is_exact_model(BsdfModel model);
 bool is_dielectric(BsdfModel model);
 
