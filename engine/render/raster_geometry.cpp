@@ -97,11 +97,13 @@ std::vector<const Primitive*> drawn_primitives(const PosedScene& posed, const Re
                                                std::vector<std::vector<RasterGeometry::Range>>& ranges)
 {
     for (const Mesh& mesh : posed.scene->meshes) ranges.emplace_back(mesh.primitives.size());
+    ranges.emplace_back(posed.deformed.size());
     std::vector<const Primitive*> primitives;
     std::uint64_t vertices = 0, indices = 0, faces = 0;
     for (const Draw& draw : posed.draws) {
         const Primitive& primitive = posed.primitive(draw);
-        RasterGeometry::Range& range = ranges[draw.mesh][draw.primitive];
+        RasterGeometry::Range& range =
+            draw.deformed != kNone ? ranges.back()[draw.deformed] : ranges[draw.mesh][draw.primitive];
         if (range.index_count != 0 || primitive.indices.empty()) continue;
         if (!is_required(primitive.topology, required)) continue;
         range = {.first_index = static_cast<std::uint32_t>(indices),

@@ -31,11 +31,14 @@ class RasterGeometry {
         std::int32_t first_vertex = 0;
         std::uint32_t first_face = 0;
     };
-    const Range& range(const Draw& draw) const { return ranges_[draw.mesh][draw.primitive]; }
+    const Range& range(const Draw& draw) const
+    {
+        return draw.deformed != kNone ? ranges_.back()[draw.deformed] : ranges_[draw.mesh][draw.primitive];
+    }
 
  private:
     static constexpr std::size_t kStreams = static_cast<std::size_t>(RasterStream::count);
-    std::vector<std::vector<Range>> ranges_;  // by mesh, primitive
+    std::vector<std::vector<Range>> ranges_;  // by mesh, primitive; the last row: deformed primitives
     std::array<gpu::Buffer, kStreams> buffers_;
     std::array<bool, kStreams> present_{};
     gpu::Buffer indices_;

@@ -34,28 +34,31 @@ T load(std::span<const std::byte> bytes, std::size_t at)
     return value;
 }
 
-// One component as a float (glTF 2.0 §3.11 for the normalized integers).
-float component(std::span<const std::byte> bytes, std::size_t at, int type, bool normalized)
+// One component as a number (glTF 2.0 §3.11 for the normalized integers).
+template <typename T>
+T component(std::span<const std::byte> bytes, std::size_t at, int type, bool normalized)
 {
     switch (type) {
         case TINYGLTF_COMPONENT_TYPE_BYTE: {
-            const float value = load<std::int8_t>(bytes, at);
-            return normalized ? std::max(value / 127.0f, -1.0f) : value;
+            const T value = load<std::int8_t>(bytes, at);
+            return normalized ? std::max(value / 127, T(-1)) : value;
         }
         case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: {
-            const float value = load<std::uint8_t>(bytes, at);
-            return normalized ? value / 255.0f : value;
+            const T value = load<std::uint8_t>(bytes, at);
+            return normalized ? value / 255 : value;
         }
         case TINYGLTF_COMPONENT_TYPE_SHORT: {
-            const float value = load<std::int16_t>(bytes, at);
-            return normalized ? std::max(value / 32767.0f, -1.0f) : value;
+            const T value = load<std::int16_t>(bytes, at);
+            return normalized ? std::max(value / 32767, T(-1)) : value;
         }
         case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: {
-            const float value = load<std::uint16_t>(bytes, at);
-            return normalized ? value / 65535.0f : value;
+            const T value = load<std::uint16_t>(bytes, at);
+            return normalized ? value / 65535 : value;
         }
         case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-            return static_cast<float>(load<std::uint32_t>(bytes, at));
+            return static_cast<T>(load<std::uint32_t>(bytes, at));
+        case TINYGLTF_COMPONENT_TYPE_DOUBLE:
+            return static_cast<T>(load<double>(bytes, at));
         default:
             return load<float>(bytes, at);
     }
@@ -147,11 +150,12 @@ std::size_t AccessorReader::count(int accessor) const
     return source_.model.accessors.at(static_cast<std::size_t>(accessor)).count;
 }
 
-Floats AccessorReader::floats(int index, std::initializer_list<std::size_t> components, const std::string& pointer,
-                              const Subset& subset) const
+template <typename T>
+Numbers<T> AccessorReader::read(int index, std::initializer_list<std::size_t> components, const std::string& pointer,
+                                const Subset& subset) const
 {
     const auto& accessor = source_.model.accessors.at(static_cast<std::size_t>(index));
-    Floats out{
+    Numbers<T> out{
         .count = subset ? subset->size() : accessor.count, .components = components_of(accessor.type), .values = {}};
     if (std::find(components.begin(), components.end(), out.components) == components.end())
         throw fault(
@@ -161,24 +165,55 @@ Floats AccessorReader::floats(int index, std::initializer_list<std::size_t> comp
     out.values.resize(out.count * out.components);
     const std::size_t size = size_of(accessor.componentType);
     const std::string where = fmt::format("/accessors/{}", index);
+    const bool as_stored =
+        accessor.componentType == (sizeof(T) == 4 ? TINYGLTF_COMPONENT_TYPE_FLOAT : TINYGLTF_COMPONENT_TYPE_DOUBLE);
     for_each_element(source_, accessor, size * out.components, where, subset,
                      [&](std::size_t i, std::span<const std::byte> bytes, std::size_t at) {
-                         if (accessor.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT) {
+                         if (as_stored) {
                              assume(at + size * out.components <= bytes.size());
                              std::memcpy(&out.values[i * out.components], bytes.data() + at, size * out.components);
                              return;
                          }
                          for (std::size_t c = 0; c < out.components; ++c)
                              out.values[i * out.components + c] =
-                                 component(bytes, at + c * size, accessor.componentType, accessor.normalized);
+                                 component<T>(bytes, at + c * size, accessor.componentType, accessor.normalized);
                      });
-    const auto bad =
-        std::find_if(out.values.begin(), out.values.end(), [](float value) { return !std::isfinite(value); });
+    const auto bad = std::find_if(out.values.begin(), out.values.end(), [](T value) { return !std::isfinite(value); });
     if (bad != out.values.end()) {
         const std::size_t place = static_cast<std::size_t>(bad - out.values.begin()) / out.components;
         throw fault(pointer, fmt::format("accessor {}, element {}: {} is not a finite number [ACCESSOR_INVALID_FLOAT]",
                                          index, subset ? (*subset)[place] : place, *bad));
     }
+    return out;
+}
+
+Floats AccessorReader::floats(int accessor, std::initializer_list<std::size_t> components, const std::string& pointer,
+                              const Subset& subset) const
+{
+    return read<float>(accessor, components, pointer, subset);
+}
+
+Doubles AccessorReader::doubles(int accessor, std::initializer_list<std::size_t> components,
+                                const std::string& pointer) const
+{
+    return read<double>(accessor, components, pointer, std::nullopt);
+}
+
+std::vector<std::uint32_t> AccessorReader::joints(int index, const std::string& pointer, const Subset& subset) const
+{
+    const auto& accessor = source_.model.accessors.at(static_cast<std::size_t>(index));
+    const int type = accessor.componentType;
+    if (accessor.type != TINYGLTF_TYPE_VEC4 ||
+        (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT))
+        throw fault(pointer, fmt::format("accessor {} holds no four unsigned integers of 8 or 16 bits "
+                                         "[MESH_PRIMITIVE_ATTRIBUTES_ACCESSOR_INVALID_FORMAT]",
+                                         index));
+    const std::size_t size = size_of(type);
+    std::vector<std::uint32_t> out(4 * (subset ? subset->size() : accessor.count));
+    for_each_element(source_, accessor, 4 * size, fmt::format("/accessors/{}", index), subset,
+                     [&](std::size_t i, std::span<const std::byte> bytes, std::size_t at) {
+                         for (std::size_t c = 0; c < 4; ++c) out[4 * i + c] = whole(bytes, at + c * size, type);
+                     });
     return out;
 }
 

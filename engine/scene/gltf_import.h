@@ -24,6 +24,10 @@ void import_materials(const Source& source, Scene& scene);
 void import_meshes(const Source& source, Scene& scene);
 /// Fills cameras, lights, nodes and roots. gltf_node.cpp
 void import_nodes(const Source& source, Scene& scene);
+/// Fills skins, and checks that they fit the meshes that nodes show with them. After import_nodes. gltf_skin.cpp
+void import_skins(const Source& source, Scene& scene);
+/// Fills animations. After all others. gltf_animation.cpp
+void import_animations(const Source& source, Scene& scene);
 
 // extras.etalon: what glTF cannot say. gltf_extras.cpp
 

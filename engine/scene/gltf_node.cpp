@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::size_t kMaxInstances = 10'000'000;
 
-dmat4 transform_of(const tinygltf::Node& in, const std::string& pointer)
+// Sets parent_from_node and what it is made of.
+void read_transform(const tinygltf::Node& in, const std::string& pointer, Node& node)
 {
     const auto check = [&](const std::vector<double>& values, std::size_t size, const char* name) {
         if (!values.empty() && values.size() != size)
@@ -31,14 +32,15 @@ dmat4 transform_of(const tinygltf::Node& in, const std::string& pointer)
         if (out[0].w != 0 || out[1].w != 0 || out[2].w != 0 || out[3].w != 1)
             throw fault(pointer + "/matrix", "the last row is not 0 0 0 1 [NODE_MATRIX_NON_TRS]",
                         "projections are for cameras");
-        return out;
+        node.parent_from_node = out;
+        return;
     }
-    const auto vector = [](const std::vector<double>& v, double standard) {
-        return v.empty() ? dvec3(standard) : dvec3(v[0], v[1], v[2]);
-    };
-    const dquat rotation =
-        in.rotation.empty() ? dquat(1, 0, 0, 0) : dquat(in.rotation[3], in.rotation[0], in.rotation[1], in.rotation[2]);
-    return compose(vector(in.translation, 0), rotation, vector(in.scale, 1));
+    Trs trs;
+    if (!in.translation.empty()) trs.translation = dvec3(in.translation[0], in.translation[1], in.translation[2]);
+    if (!in.rotation.empty()) trs.rotation = dquat(in.rotation[3], in.rotation[0], in.rotation[1], in.rotation[2]);
+    if (!in.scale.empty()) trs.scale = dvec3(in.scale[0], in.scale[1], in.scale[2]);
+    node.parent_from_node = compose(trs.translation, trs.rotation, trs.scale);
+    node.trs = trs;
 }
 
 double positive(double value, const std::string& pointer)
@@ -140,9 +142,11 @@ Node node_of(const tinygltf::Node& in, const std::string& pointer, AccessorReade
 {
     Node out;
     out.name = in.name;
-    out.parent_from_node = transform_of(in, pointer);
+    read_transform(in, pointer, out);
     for (const int child : in.children) out.children.push_back(index_of(child));
     out.mesh = index_of(in.mesh);
+    out.skin = index_of(in.skin);
+    out.weights = in.weights;
     out.camera = index_of(in.camera);
     if (const Value* light = member(in.extensions, "KHR_lights_punctual"))
         if (const Value* index = member(*light, "light")) out.light = index_of(index->GetNumberAsInt());

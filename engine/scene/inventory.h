@@ -46,8 +46,21 @@ struct Inventory {
     std::vector<LightRow> lights;
     std::vector<MaterialRow> materials;
     std::vector<ImageRow> images;
+    struct AnimationRow {
+        std::string name;
+        double duration = 0;  ///< seconds
+        std::size_t channels = 0;
+        std::size_t keys = 0;  ///< of all its samplers
+    };
+    struct SkinRow {
+        std::string name;
+        std::size_t joints = 0;
+    };
+
     std::vector<std::string> variants;
-    std::vector<std::string> animations;
+    std::vector<AnimationRow> animations;
+    std::vector<SkinRow> skins;
+    std::size_t morph_targets = 0;  ///< of all primitives
     std::vector<std::string> warnings;
 
     std::size_t nodes = 0;

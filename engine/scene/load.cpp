@@ -15,12 +15,8 @@ namespace {
 
 constexpr std::string_view kBuiltinPrefix = "builtin:";
 
-void list_names(const gltf::Model& model, Scene& scene)
+void list_variants(const gltf::Model& model, Scene& scene)
 {
-    for (std::size_t i = 0; i < model.animations.size(); ++i)
-        scene.animations.push_back(model.animations[i].name.empty() ? fmt::format("animation {}", i)
-                                                                    : model.animations[i].name);
-    if (!model.animations.empty()) scene.warnings.push_back("/animations: not played: the rest pose is drawn");
     const gltf::Value* extension = gltf::member(model.extensions, "KHR_materials_variants");
     const gltf::Value* variants = extension == nullptr ? nullptr : gltf::member(*extension, "variants");
     for (std::size_t i = 0; variants != nullptr && i < variants->ArrayLen(); ++i) {
@@ -53,7 +49,9 @@ Scene parse_gltf(std::span<const std::byte> bytes, const std::filesystem::path& 
     gltf::import_materials(source, scene);
     gltf::import_meshes(source, scene);
     gltf::import_nodes(source, scene);
-    list_names(model, scene);
+    gltf::import_skins(source, scene);
+    gltf::import_animations(source, scene);
+    list_variants(model, scene);
     if (options.strict) refuse_warnings(scene);
     return scene;
 }

@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <tuple>
 
 #include "engine/base/error.h"
 #include "engine/scene/builder.h"
 #include "engine/scene/environment.h"
+#include "engine/scene/morph.h"
+#include "engine/scene/skin.h"
 #include "engine/scene/view.h"
 
 namespace etalon {
@@ -19,6 +22,8 @@ namespace {
 constexpr std::size_t kMaxDraws = 10'000'000;
 // Up to here bounds come from every vertex, beyond from the boxes of the primitives.
 constexpr std::size_t kExactVertices = std::size_t{1} << 24;
+// Vertices shaped by skins and morph targets: each node may have its own.
+constexpr std::size_t kMaxDeformedBytes = std::size_t{8} << 30;
 
 std::string node_label(const Scene& scene, Index index)
 {
@@ -26,11 +31,18 @@ std::string node_label(const Scene& scene, Index index)
                        scene.nodes[index].name.empty() ? "" : " \"" + scene.nodes[index].name + "\"");
 }
 
+// A node whose mesh is not drawn as stored.
+struct Deformation {
+    Index node;
+    std::size_t first_draw;
+    dmat4 world_from_node;
+};
+
 // The walk over the forest below one root. Depth-first in node order, without recursion: files may be 10^6 deep.
 class Walk {
  public:
-    Walk(const Scene& scene, const SceneRoot& root, PosedScene& out)
-        : scene_(scene), out_(out), seen_(scene.nodes.size())
+    Walk(const Scene& scene, const Motion& motion, const SceneRoot& root, PosedScene& out)
+        : scene_(scene), motion_(motion), out_(out), seen_(scene.nodes.size())
     {
         for (auto it = root.nodes.rbegin(); it != root.nodes.rend(); ++it) stack_.push_back({*it, true, dmat4(1)});
         while (!stack_.empty()) {
@@ -41,6 +53,7 @@ class Walk {
     }
 
     std::vector<PlacedCamera> cameras;
+    std::vector<Deformation> deformations;
 
  private:
     struct Pending {
@@ -57,14 +70,15 @@ class Walk {
                         node_label(scene_, index) + " is reached twice: it has two parents or is its own ancestor");
         seen_[index] = true;
         const Node& node = scene_.nodes[index];
-        const dmat4 world = world_from_parent * node.parent_from_node;
+        const dmat4 world = world_from_parent * parent_from_node(scene_, motion_, index);
         for (int column = 0; column < 4; ++column)
             if (!is_finite(dvec3(world[column])))
                 throw Error(Blame::input, node_label(scene_, index) + ": the world matrix is not finite",
                             "repair the scales and translations above this node");
         // A camera stays usable in a hidden subtree: visibility is about what is drawn.
         if (node.camera != kNone) cameras.push_back({node.camera, index, world});
-        const bool visible = parent_visible && node.visible;
+        const auto shown = motion_.visible.find(index);
+        const bool visible = parent_visible && (shown == motion_.visible.end() ? node.visible : shown->second);
         if (visible && node.mesh != kNone) add_draws(node, index, world);
         if (visible && node.sphere) add_sphere(node, index, world);
         if (visible && node.light != kNone) add_light(node, index, world);
@@ -82,6 +96,8 @@ class Walk {
                         fmt::format("{} asks for {} draws; the limit is {}", node_label(scene_, index),
                                     primitives.size() * copies, kMaxDraws),
                         "use fewer instances");
+        if (std::any_of(primitives.begin(), primitives.end(), [](const Primitive& p) { return p.is_deformable(); }))
+            deformations.push_back({index, out_.draws.size(), world});
         for (std::size_t copy = 0; copy < copies; ++copy) {
             const dmat4 placed = node.instances.empty() ? world : world * node.instances[copy];
             for (std::size_t p = 0; p < primitives.size(); ++p)
@@ -116,10 +132,105 @@ class Walk {
     }
 
     const Scene& scene_;
+    const Motion& motion_;
     PosedScene& out_;
     std::vector<bool> seen_;
     std::vector<Pending> stack_;
 };
+
+// Shapes the primitives of nodes with skins and morph targets.
+class Deformer {
+ public:
+    Deformer(const Scene& scene, const Motion& motion, PosedScene& out) : scene_(scene), motion_(motion), out_(out) {}
+
+    void deform(const Deformation& at)
+    {
+        const Node& node = scene_.nodes[at.node];
+        const auto moved = motion_.weights.find(at.node);
+        const std::vector<double>& weights = moved != motion_.weights.end() ? moved->second
+                                             : !node.weights.empty()        ? node.weights
+                                                                            : scene_.meshes[node.mesh].weights;
+        const bool reshaped = std::any_of(weights.begin(), weights.end(), [](double w) { return w != 0; });
+        const auto& primitives = scene_.meshes[node.mesh].primitives;
+        const auto drawn = static_cast<std::size_t>(
+            std::count_if(primitives.begin(), primitives.end(), [](const Primitive& p) { return !p.indices.empty(); }));
+        for (std::size_t d = at.first_draw; d < out_.draws.size() && out_.draws[d].node == at.node; ++d) {
+            Draw& draw = out_.draws[d];
+            const Primitive& base = scene_.meshes[draw.mesh].primitives[draw.primitive];
+            const bool has_skin = node.skin != kNone && !base.influences.empty();
+            const bool is_morphed = reshaped && !base.targets.empty();
+            if (!has_skin && !is_morphed) continue;
+            // Instances of one node, and nodes at the same weights, share what is alike.
+            const Key key{draw.mesh, draw.primitive, has_skin ? at.node : kNone, weights};
+            const auto [known, is_new] = made_.try_emplace(key);
+            try {
+                if (is_new) known->second = make(base, weights, is_morphed, has_skin ? &at : nullptr);
+            } catch (Error& error) {
+                throw error.at(node_label(scene_, at.node));
+            }
+            draw.deformed = known->second.index;
+            if (!has_skin) continue;
+            // A skin forgets where its node is: what is left of an instance is its own matrix.
+            const std::size_t copy = (d - at.first_draw) / drawn;
+            draw.world_from_object = translation(known->second.origin);
+            if (!node.instances.empty()) draw.world_from_object = node.instances.at(copy) * draw.world_from_object;
+        }
+    }
+
+ private:
+    using Key = std::tuple<Index, Index, Index, std::vector<double>>;
+    struct Made {
+        Index index = kNone;
+        dvec3 origin{0};
+    };
+
+    Made make(const Primitive& base, const std::vector<double>& weights, bool is_morphed, const Deformation* skin)
+    {
+        Made made{.index = static_cast<Index>(out_.deformed.size())};
+        bytes_ += base.positions.size() * (2 * sizeof(vec3) + 3 * sizeof(vec4)) + base.indices.size() * sizeof(Index);
+        if (bytes_ > kMaxDeformedBytes)
+            throw Error(Blame::input, "the skins and morph targets of the scene make more than 8 GiB of vertices",
+                        "show fewer nodes with them");
+        Primitive shaped = is_morphed ? morphed(base, weights) : base;
+        if (skin != nullptr) {
+            Skinned placed =
+                skinned(std::move(shaped), joints_of(scene_.nodes[skin->node].skin), skin->world_from_node);
+            shaped = std::move(placed.primitive);
+            made.origin = placed.origin;
+        }
+        finish_deformed(shaped, is_morphed);
+        out_.deformed.push_back(std::move(shaped));
+        return made;
+    }
+
+    const std::vector<dmat4>& joints_of(Index skin)
+    {
+        if (world_from_node_.empty()) world_from_node_ = world_matrices(scene_, motion_);
+        const auto [known, is_new] = joints_.try_emplace(skin);
+        if (is_new) known->second = joint_matrices(scene_, scene_.skins.at(skin), world_from_node_);
+        return known->second;
+    }
+
+    const Scene& scene_;
+    const Motion& motion_;
+    PosedScene& out_;
+    std::map<Key, Made> made_;
+    std::vector<dmat4> world_from_node_;
+    std::map<Index, std::vector<dmat4>> joints_;
+    std::size_t bytes_ = 0;
+};
+
+Motion motion_of(const Scene& scene, const PoseSettings& settings, std::vector<std::string>& notes)
+{
+    if (!settings.time && !settings.animation) return {};
+    const double time = settings.time.value_or(0);
+    if (!std::isfinite(time))
+        throw Error(Blame::input, fmt::format("{} is no time", time), "seconds from the animation's start");
+    if (settings.animation) return evaluate(scene, find_animation(scene, *settings.animation), time);
+    if (!scene.animations.empty()) return evaluate(scene, scene.animations.front(), time);
+    notes.push_back("no animation: the rest pose at any time");
+    return {};
+}
 
 // Does this surface light the others? A texture of glowing parts at ordinary strength is decoration: without a lamp in
 // the file such models (DamagedHelmet) are meant to be lit from outside.
@@ -199,7 +310,10 @@ PosedScene pose(const Scene& scene, const PoseSettings& settings)
     PosedScene posed;
     posed.scene = &scene;
     const ivec2 size = picture_size(settings, root.hints);
-    const Walk walk(scene, root, posed);
+    const Motion motion = motion_of(scene, settings, posed.notes);
+    const Walk walk(scene, motion, root, posed);
+    Deformer deformer(scene, motion, posed);
+    for (const Deformation& deformation : walk.deformations) deformer.deform(deformation);
     const Subject subject = measure_bounds(posed);
     posed.view = choose_view(scene, walk.cameras, subject, size, settings, posed.notes);
     posed.environment = resolve_environment(root, settings, has_light(posed), posed.notes);

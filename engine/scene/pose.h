@@ -25,6 +25,7 @@ struct Draw {
     Index primitive = 0;
     Index node = 0;
     dmat4 world_from_object{1};
+    Index deformed = kNone;  ///< into PosedScene::deformed: the primitive as skin and morph targets shape it
 };
 
 struct PosedSphere {
@@ -40,18 +41,23 @@ struct PosedLight {
     dvec3 direction{0, 0, -1};  ///< in which it shines, world, unit
 };
 
-/// What a renderer draws: a scene at one instant, flattened, seen by one view. `scene` must outlive it.
+/// What a renderer draws: a scene at one instant, flattened, seen by one view. `scene` must outlive it. Geometry is to
+/// be had from primitive(draw): that of the scene is as it is before it moves.
 struct PosedScene {
     const Scene* scene = nullptr;
     View view;
     std::vector<Draw> draws;  ///< visible ones, in depth-first node order
+    std::vector<Primitive> deformed;
     std::vector<PosedSphere> spheres;
     std::vector<PosedLight> lights;
     Environment environment;             ///< resolved: black when there is none
     dvec3 bounds_min{0}, bounds_max{0};  ///< world box of draws and spheres
     std::vector<std::string> notes;  ///< choices made for the user: "no camera: framed from …", "no light: studio"
 
-    const Primitive& primitive(const Draw& d) const { return scene->meshes[d.mesh].primitives[d.primitive]; }
+    const Primitive& primitive(const Draw& d) const
+    {
+        return d.deformed != kNone ? deformed[d.deformed] : scene->meshes[d.mesh].primitives[d.primitive];
+    }
     const Material& material(const Draw& d) const { return scene->materials[primitive(d).material]; }
 };
 
@@ -72,10 +78,13 @@ struct PoseSettings {
     bool no_environment = false;             ///< black
     double environment_rotation = 0;         ///< degrees, added
     double environment_intensity = 1;        ///< multiplied
+    std::optional<double> time;              ///< seconds into the animation, held at its ends; absent: the rest pose
+    std::optional<std::string> animation;    ///< name or index; the first when absent. Alone: at time 0
 };
 
-/// Flattens the node forest, picks or frames the camera, and adds the neutral studio environment where the scene has no
-/// light of its own: no environment, no punctual light, and no emission but textures of ordinary strength (at most 1).
+/// Poses nodes, skins and morph targets at the settings' time, flattens the node forest, picks or frames the camera,
+/// and adds the neutral studio environment where the scene has no light of its own: no environment, no punctual light,
+/// and no emission but textures of ordinary strength (at most 1).
 PosedScene pose(const Scene& scene, const PoseSettings& settings = {});
 
 /// The neutral studio: an equirectangular map with a mean radiance near 1 nit, soft key from above.

@@ -18,6 +18,20 @@ inline constexpr Index kNone = 0xffffffffu;
 
 enum class Topology { points, lines, triangles };
 
+/// What one morph target adds, in mesh space, where its weight is 1. Each list is empty (nothing) or has one entry per
+/// position of the primitive, all finite.
+struct MorphTarget {
+    std::vector<vec3> positions;
+    std::vector<vec3> normals;
+    std::vector<vec3> tangents;  ///< to xyz
+};
+
+/// How far a joint of the skin moves a vertex.
+struct Influence {
+    std::uint32_t joint = 0;  ///< index into Skin::joints
+    float weight = 0;         ///< finite, >= 0; a vertex's need not add up to 1
+};
+
 /// One draw's geometry in mesh space, metres. Strips, fans and loops have been unrolled into `indices`.
 /// Every attribute is empty or has one entry per position, all finite.
 struct Primitive {
@@ -31,11 +45,25 @@ struct Primitive {
     std::vector<std::uint32_t> indices;   ///< 1, 2 or 3 an element; every value < positions.size()
     Index material = 0;                   ///< always a valid index: a default material is appended where needed
     bool has_normals = false;             ///< the file gave normals; else they are the geometric ones of flat faces
+    std::optional<int> tangents_from_uv;  ///< the uv set that they were computed from; nothing: the file gave them
+    std::vector<MorphTarget> targets;
+    std::vector<Influence> influences;  ///< influences_per_vertex for each position, in its order; empty: no skin
+    std::size_t influences_per_vertex = 0;
+    bool is_deformable() const { return !targets.empty() || !influences.empty(); }
 };
 
 struct Mesh {
     std::string name;
     std::vector<Primitive> primitives;
+    std::vector<double> weights;  ///< of the morph targets, where neither node nor animation says otherwise
+};
+
+/// Bones. Joint i takes a vertex from mesh space into the world by world_from_node(joints[i]) · inverse_bind[i]; where
+/// the mesh's own node is does not matter (glTF 2.0 §3.7.3.3).
+struct Skin {
+    std::string name;
+    std::vector<Index> joints;        ///< nodes
+    std::vector<dmat4> inverse_bind;  ///< one per joint, affine; possibly singular
 };
 
 enum class Wrap { repeat, mirrored_repeat, clamp_to_edge };
@@ -190,11 +218,21 @@ struct SphereShape {
     Index material = 0;
 };
 
+/// Translation · rotation · scale. The rotation need not be unit.
+struct Trs {
+    dvec3 translation{0};
+    dquat rotation{1, 0, 0, 0};
+    dvec3 scale{1};
+};
+
 struct Node {
     std::string name;
     dmat4 parent_from_node{1};
+    std::optional<Trs> trs;  ///< what parent_from_node is made of; nothing where the file gave a matrix
     std::vector<Index> children;
     Index mesh = kNone;
+    Index skin = kNone;           ///< of its mesh
+    std::vector<double> weights;  ///< of its mesh's morph targets; empty: the mesh's own
     Index camera = kNone;
     Index light = kNone;
     std::optional<SphereShape> sphere;
@@ -225,6 +263,31 @@ struct SceneRoot {
     FilmHints hints;
 };
 
+enum class Interpolation { step, linear, cubic };
+
+/// A curve through keys (glTF 2.0 §3.11 and appendix C).
+struct AnimationSampler {
+    Interpolation interpolation = Interpolation::linear;
+    std::size_t width = 0;       ///< numbers of a value: 3 of a translation, one per target of weights
+    std::vector<double> times;   ///< seconds, finite, never falling; at least one
+    std::vector<double> values;  ///< width numbers a key, finite; cubic: 3 width (in-tangent, value, out-tangent)
+};
+
+/// A property that follows a sampler. `property` is a row of animated_properties() (engine/scene/animation.h), which
+/// says what `object` is an index of.
+struct AnimationChannel {
+    Index sampler = 0;
+    Index property = 0;
+    Index object = 0;
+};
+
+struct Animation {
+    std::string name;  ///< "animation 3" where the file gives none
+    std::vector<AnimationSampler> samplers;
+    std::vector<AnimationChannel> channels;  ///< no two with the same property and object
+    double duration = 0;                     ///< of the last key, seconds
+};
+
 /// A glTF asset as a plain value; knows neither devices nor files nor time.
 struct Scene {
     std::string name;  ///< file name without folder, or "builtin:…"
@@ -234,12 +297,13 @@ struct Scene {
     std::vector<Texels> images;
     std::vector<Camera> cameras;
     std::vector<Light> lights;
+    std::vector<Skin> skins;
     std::vector<Node> nodes;       ///< a forest: every child has one parent, no cycle
     std::vector<SceneRoot> roots;  ///< glTF's scenes; at least one
     Index default_root = 0;
-    std::vector<std::string> warnings;    ///< what was ignored or mended, one line each, with its JSON pointer
-    std::vector<std::string> variants;    ///< names of KHR_materials_variants, listed only
-    std::vector<std::string> animations;  ///< names, listed only
+    std::vector<Animation> animations;
+    std::vector<std::string> warnings;  ///< what was ignored or mended, one line each, with its JSON pointer
+    std::vector<std::string> variants;  ///< names of KHR_materials_variants, listed only
 };
 
 }  // namespace etalon

@@ -25,6 +25,20 @@ void take_vertices(Primitive& primitive, const std::vector<std::uint32_t>& order
     take(primitive.tangents);
     for (auto& set : primitive.uv) take(set);
     take(primitive.colors);
+    for (MorphTarget& target : primitive.targets) {
+        take(target.positions);
+        take(target.normals);
+        take(target.tangents);
+    }
+    if (primitive.influences.empty()) return;
+    const std::size_t each = primitive.influences_per_vertex;
+    std::vector<Influence> influences;
+    influences.reserve(order.size() * each);
+    for (const std::uint32_t i : order) {
+        const auto from = primitive.influences.begin() + static_cast<std::ptrdiff_t>(i * each);
+        influences.insert(influences.end(), from, from + static_cast<std::ptrdiff_t>(each));
+    }
+    primitive.influences = std::move(influences);
 }
 
 // Twice the area times the normal, in double: exactly zero only for triangles that are segments or points, or too small
@@ -35,13 +49,20 @@ dvec3 area_vector(const Primitive& primitive, std::size_t triangle)
     return cross(corner(1) - corner(0), corner(2) - corner(0));
 }
 
+// Of a triangle without area, which only what moves keeps, some direction.
+vec3 face_normal(const Primitive& primitive, std::size_t triangle)
+{
+    const dvec3 n = normalize(area_vector(primitive, triangle));
+    return is_finite(n) ? vec3(n) : vec3(0, 0, 1);
+}
+
 // Each triangle its own three vertices, with the normal of its plane.
 void make_flat(Primitive& primitive)
 {
     std::vector<vec3> normals;
     normals.reserve(primitive.indices.size());
     for (std::size_t t = 0; t < primitive.indices.size() / 3; ++t)
-        normals.insert(normals.end(), 3, vec3(normalize(area_vector(primitive, t))));
+        normals.insert(normals.end(), 3, face_normal(primitive, t));
     primitive.normals.clear();
     take_vertices(primitive, primitive.indices);
     primitive.normals = std::move(normals);
@@ -115,8 +136,7 @@ void finish_normals(Primitive& primitive)
     if (!some_zero || primitive.topology != Topology::triangles) return;
     for (std::size_t t = 0; t < primitive.indices.size() / 3; ++t)
         for (std::size_t i = 0; i < 3; ++i)
-            if (vec3& n = primitive.normals[primitive.indices[3 * t + i]]; n == vec3(0))
-                n = vec3(normalize(area_vector(primitive, t)));
+            if (vec3& n = primitive.normals[primitive.indices[3 * t + i]]; n == vec3(0)) n = face_normal(primitive, t);
 }
 
 void add_tangents(Primitive& primitive, int uv_set)
@@ -143,6 +163,7 @@ void add_tangents(Primitive& primitive, int uv_set)
     }
     take_vertices(primitive, order);
     primitive.tangents = std::move(kept);
+    primitive.tangents_from_uv = uv_set;
     primitive.indices = std::move(indices);
 }
 

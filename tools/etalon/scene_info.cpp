@@ -62,7 +62,15 @@ std::string as_text(const Inventory& scene)
     text += section("images", scene.images, [](const Inventory::ImageRow& row) {
         return fmt::format("{}, {}x{}, {} bits", called(row.name), row.width, row.height, row.bits);
     });
-    text += section("animations", scene.animations, as_is) + section("variants", scene.variants, as_is);
+    text += section("skins", scene.skins, [](const Inventory::SkinRow& row) {
+        return fmt::format("{}, {} joints", called(row.name), row.joints);
+    });
+    if (scene.morph_targets > 0) text += fmt::format("morph targets of all primitives: {}\n", scene.morph_targets);
+    text += section("animations", scene.animations, [](const Inventory::AnimationRow& row) {
+        return fmt::format("{}, {:.4g} s, {} channels, {} keys", called(row.name), row.duration, row.channels,
+                           row.keys);
+    });
+    text += section("variants", scene.variants, as_is);
     return text;
 }
 
@@ -100,6 +108,13 @@ Json as_json(const Inventory& scene, const std::string& name)
     const Json images = list(scene.images, [](const Inventory::ImageRow& row) {
         return Json::object({{"name", row.name}, {"width", row.width}, {"height", row.height}, {"bits", row.bits}});
     });
+    const Json animations = list(scene.animations, [](const Inventory::AnimationRow& row) {
+        return Json::object(
+            {{"name", row.name}, {"duration_seconds", row.duration}, {"channels", row.channels}, {"keys", row.keys}});
+    });
+    const Json skins = list(scene.skins, [](const Inventory::SkinRow& row) {
+        return Json::object({{"name", row.name}, {"joints", row.joints}});
+    });
     const Json counts = Json::object({{"nodes", scene.nodes},
                                       {"meshes", scene.meshes},
                                       {"primitives", scene.primitives},
@@ -108,7 +123,8 @@ Json as_json(const Inventory& scene, const std::string& name)
                                       {"lines", scene.lines},
                                       {"points", scene.points},
                                       {"spheres", scene.spheres},
-                                      {"instances", scene.instances}});
+                                      {"instances", scene.instances},
+                                      {"morph_targets", scene.morph_targets}});
     const Json bytes = Json::object(
         {{"geometry", scene.geometry_bytes}, {"textures", scene.texture_bytes}, {"total", scene.total_bytes()}});
     return Json::object({{"schema", "etalon-scene/1"},
@@ -120,7 +136,8 @@ Json as_json(const Inventory& scene, const std::string& name)
                          {"lights", lights},
                          {"materials", materials},
                          {"images", images},
-                         {"animations", scene.animations},
+                         {"skins", skins},
+                         {"animations", animations},
                          {"variants", scene.variants},
                          {"warnings", scene.warnings}});
 }

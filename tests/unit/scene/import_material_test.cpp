@@ -292,8 +292,8 @@ TEST(ImportExtensions, refuses_a_required_one_that_is_lacking_by_name)
 TEST(ImportExtensions, warns_once_of_an_optional_one_and_refuses_it_when_strict)
 {
     GltfWriter file = test::triangle_file();
-    file.member(R"("extensionsUsed":["KHR_materials_sheen","KHR_materials_unlit","VENDOR_thing"])");
-    EXPECT_THAT(file.load().warnings, ElementsAre(HasSubstr("KHR_materials_sheen"), HasSubstr("VENDOR_thing")));
+    file.member(R"("extensionsUsed":["VENDOR_sheen","KHR_materials_unlit","VENDOR_thing"])");
+    EXPECT_THAT(file.load().warnings, ElementsAre(HasSubstr("VENDOR_sheen"), HasSubstr("VENDOR_thing")));
     EXPECT_THROW(file.load({.strict = true}), Error);
     EXPECT_NO_THROW(test::triangle_file().load({.strict = true}));
 }
@@ -310,8 +310,9 @@ TEST(ImportExtensions, lists_variants_and_animations)
         R"({"name":"hop","channels":[{"sampler":0,"target":{"node":0,"path":"translation"}}],"samplers":[{"input":1,"output":2}]})");
     const Scene scene = file.load();
     EXPECT_THAT(scene.variants, ElementsAre("red", "blue"));
-    EXPECT_THAT(scene.animations, ElementsAre("hop"));
-    EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("/animations")));
+    ASSERT_EQ(scene.animations.size(), 1u);
+    EXPECT_EQ(scene.animations[0].name, "hop");
+    EXPECT_THAT(scene.warnings, ElementsAre());
 }
 
 }  // namespace

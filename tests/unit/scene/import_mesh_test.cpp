@@ -231,16 +231,5 @@ TEST(ImportMesh, gives_primitives_without_a_material_the_standard_one)
     EXPECT_EQ(scene.meshes[1].primitives[0].material, 0u);
 }
 
-TEST(ImportMesh, warns_once_of_morph_targets_and_skins)
-{
-    GltfWriter file;
-    file.add_floats(test::kTriangle, 3);
-    file.show(R"("attributes":{"POSITION":0},"targets":[{"POSITION":0},{"POSITION":0}])");
-    file.show(R"("attributes":{"POSITION":0},"targets":[{"POSITION":0}])");
-    file.add("skins", R"({"joints":[0]})");
-    const Scene scene = file.load();
-    EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("morph targets"), HasSubstr("joints")));
-}
-
 }  // namespace
 }  // namespace etalon
