@@ -186,11 +186,12 @@ class Meshes {
     {
         for (std::size_t t = 0; t < in.targets.size(); ++t) {
             MorphTarget target;
-            for (const auto& [name, accessor] : in.targets[t]) {
+            for (const auto& offsets : in.targets[t]) {
+                const std::string& name = offsets.first;
                 const std::string at = fmt::format("{}/targets/{}/{}", pointer, t, name);
                 const auto read = [&] {
-                    check_count(accessor, vertices, at);
-                    return triples(reader_.floats(accessor, {3}, at, used));
+                    check_count(offsets.second, vertices, at);
+                    return triples(reader_.floats(offsets.second, {3}, at, used));
                 };
                 if (name == "POSITION")
                     target.positions = read();
