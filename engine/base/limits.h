@@ -21,6 +21,7 @@ struct Limits {
     std::uint64_t json_depth;
     std::uint64_t json_values;
     std::uint64_t zero_filled_bytes;  ///< accessors without a bufferView, together
+    std::uint64_t compressed_ratio;   ///< bytes that a Draco payload fills, for each of its own
     std::uint64_t vertex_bytes;       ///< attributes and indices of all primitives once imported
     std::uint64_t node_depth;
     std::uint64_t instances;      ///< of EXT_mesh_gpu_instancing, in the file

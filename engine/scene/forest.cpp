@@ -20,12 +20,15 @@ Error fault(std::string where, std::string what)
 }  // namespace
 
 void check_forest(const std::vector<std::vector<std::size_t>>& children,
-                  const std::vector<std::vector<std::size_t>>& scenes)
+                  const std::vector<std::vector<std::size_t>>& scenes, std::uint64_t max_depth)
 {
     const std::size_t none = children.size();
     std::vector<std::size_t> parent(children.size(), none);
     for (std::size_t i = 0; i < children.size(); ++i)
         for (const std::size_t child : children[i]) {
+            if (parent[child] == i)
+                throw fault(fmt::format("/nodes/{}/children", i),
+                            fmt::format("node {} is listed twice [DUPLICATE_ELEMENTS]", child));
             if (parent[child] != none)
                 throw fault(
                     fmt::format("/nodes/{}/children", i),
@@ -34,15 +37,20 @@ void check_forest(const std::vector<std::vector<std::size_t>>& children,
         }
 
     // With one parent each, what no root reaches is on or below a cycle.
-    std::vector<std::size_t> pending;
+    std::vector<std::size_t> level;
     for (std::size_t i = 0; i < parent.size(); ++i)
-        if (parent[i] == none) pending.push_back(i);
+        if (parent[i] == none) level.push_back(i);
     std::vector<bool> reached(children.size());
-    while (!pending.empty()) {
-        const std::size_t i = pending.back();
-        pending.pop_back();
-        reached[i] = true;
-        pending.insert(pending.end(), children[i].begin(), children[i].end());
+    for (std::uint64_t depth = 0; !level.empty(); ++depth) {
+        if (depth == max_depth)
+            throw fault(fmt::format("/nodes/{}", level.front()),
+                        fmt::format("this node has {} ancestors: the limit of depth is reached", depth));
+        std::vector<std::size_t> below;
+        for (const std::size_t i : level) {
+            reached[i] = true;
+            below.insert(below.end(), children[i].begin(), children[i].end());
+        }
+        level = std::move(below);
     }
     if (const auto lost = std::find(reached.begin(), reached.end(), false); lost != reached.end())
         throw fault(fmt::format("/nodes/{}", lost - reached.begin()), "this node is its own ancestor [NODE_LOOP]");
@@ -56,7 +64,7 @@ void check_forest(const std::vector<std::vector<std::size_t>>& children,
                                         parent[node]));
             if (listed_in[node] == s)
                 throw fault(fmt::format("/scenes/{}/nodes", s),
-                            fmt::format("node {} is listed twice [ARRAY_ELEMENT_NOT_UNIQUE]", node));
+                            fmt::format("node {} is listed twice [DUPLICATE_ELEMENTS]", node));
             listed_in[node] = s;
         }
     }

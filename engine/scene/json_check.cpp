@@ -14,7 +14,7 @@ using nlohmann::json;
 
 class Counter : public nlohmann::json_sax<json> {
  public:
-    explicit Counter(const GltfLimits& limits) : limits_(limits) {}
+    explicit Counter(const Limits& limits) : limits_(limits) {}
 
     bool null() override { return value(); }
     bool boolean(bool) override { return value(); }
@@ -55,14 +55,14 @@ class Counter : public nlohmann::json_sax<json> {
         return true;
     }
 
-    const GltfLimits& limits_;
+    const Limits& limits_;
     std::size_t depth_ = 0;
     std::size_t values_ = 0;
 };
 
 }  // namespace
 
-void check_json(std::string_view text, const GltfLimits& limits)
+void check_json(std::string_view text, const Limits& limits)
 {
     if (text.size() > limits.json_bytes)
         throw Error(Blame::input, fmt::format("{} bytes of JSON; the limit is {}", text.size(), limits.json_bytes));

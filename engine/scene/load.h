@@ -5,14 +5,14 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/scene/preflight.h"
+#include "engine/base/limits.h"
 #include "engine/scene/scene.h"
 
 namespace etalon {
 
 struct LoadOptions {
     bool strict = false;  ///< warnings become errors
-    GltfLimits limits{};
+    Limits limits{};
 };
 
 /// Loads a .gltf or .glb file, or a built-in scene by name ("builtin:cornell"). External buffers and images are read

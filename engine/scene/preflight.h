@@ -1,26 +1,21 @@
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-namespace etalon {
+#include "engine/base/limits.h"
 
-/// What a glTF file may ask of us before we say no.
-struct GltfLimits {
-    std::size_t json_bytes = std::size_t{1} << 30;
-    std::size_t json_depth = 256;  ///< no recursive reader sees deeper text
-    std::size_t json_values = 50'000'000;
-    std::size_t resource_bytes = std::size_t{4} << 30;  ///< one buffer or image
-    std::size_t zero_filled_bytes = 256 << 20;          ///< accessors without a bufferView, together
-};
+namespace etalon {
 
 /// The bytes of a buffer: in the file itself, or owned.
 struct GltfBuffer {
     std::vector<std::byte> owned;
     std::span<const std::byte> bytes;  ///< of `owned` or of the file that was checked; empty when the file gives none
+    std::uint64_t declared = 0;        ///< its byteLength, with or without data
 };
 
 /// Where an image is: in a buffer or behind a URI that has not been followed yet.
@@ -39,10 +34,10 @@ struct CheckedGltf {
 
 /// Looks at a .gltf or .glb file before anything trusts it: GLB chunks, JSON depth and counts, version, required
 /// extensions, the type and range of every index, accessors within bufferViews within buffers (overflow-safe, sparse
-/// ones too), nodes a forest. Buffers are loaded from beneath `folder`; `bytes` must outlive the result. Throws
-/// Error(input) with a JSON pointer, the value and, where one fits, the Khronos validator's code in brackets. Bounded
-/// in time and memory by the limits.
+/// ones too), the headers of Draco and meshopt payloads, nodes a forest. Buffers are loaded from beneath `folder`;
+/// `bytes` must outlive the result. Throws Error(input) with a JSON pointer, the value and, where one fits, the Khronos
+/// validator's code in brackets. Bounded in time, memory and stack by the limits.
 CheckedGltf preflight(std::span<const std::byte> bytes, const std::filesystem::path& folder,
-                      const GltfLimits& limits = {});
+                      const Limits& limits = Limits());
 
 }  // namespace etalon

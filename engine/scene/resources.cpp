@@ -7,6 +7,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -119,11 +120,13 @@ OpenFile open_regular(const std::filesystem::path& folder, const std::string& re
     return {std::move(file), static_cast<std::size_t>(status.st_size)};
 }
 
-std::vector<std::byte> read_beneath(const std::filesystem::path& folder, std::string_view uri, std::size_t max_bytes)
+std::vector<std::byte> read_beneath(const std::filesystem::path& folder, std::string_view uri, std::size_t max_bytes,
+                                    std::size_t wanted)
 {
     const OpenFile file = open_regular(folder, relative_path(uri), uri);
-    if (file.size > max_bytes) throw refused(uri, fmt::format("has {} bytes; the limit is {}", file.size, max_bytes));
-    std::vector<std::byte> out(file.size);
+    const std::size_t size = std::min(file.size, wanted);
+    if (size > max_bytes) throw refused(uri, fmt::format("has {} bytes; the limit is {}", size, max_bytes));
+    std::vector<std::byte> out(size);
     std::size_t done = 0;
     while (done < out.size()) {
         const ssize_t got = ::read(file.descriptor.get(), out.data() + done, out.size() - done);
@@ -215,10 +218,11 @@ std::vector<std::byte> base64_decoded(std::string_view text)
     return out;
 }
 
-std::vector<std::byte> read_uri(std::string_view uri, const std::filesystem::path& folder, std::size_t max_bytes)
+std::vector<std::byte> read_uri(std::string_view uri, const std::filesystem::path& folder, std::size_t max_bytes,
+                                std::size_t wanted)
 {
     if (scheme_of(uri) == "data") return decode_data_uri(uri, max_bytes);
-    return read_beneath(folder, uri, max_bytes);
+    return read_beneath(folder, uri, max_bytes, wanted);
 }
 
 std::filesystem::path confined_path(std::string_view uri, const std::filesystem::path& folder)

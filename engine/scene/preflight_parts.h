@@ -1,0 +1,51 @@
+#pragma once
+// Private to preflight: its checks, in the order in which they run. Each trusts those before it, and throws
+// Error(input) with a JSON pointer.
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "engine/scene/glb.h"
+#include "engine/scene/preflight.h"
+#include "engine/scene/preflight_document.h"
+
+namespace etalon::document {
+
+inline constexpr std::string_view kLights = "/extensions/KHR_lights_punctual/lights";
+
+/// What must be arrays of objects is. preflight_references.cpp
+void check_collections(const json& document);
+/// Every index is one, of something that exists.
+void check_references(const json& document);
+
+/// A bufferView within the declared length of its buffer.
+struct View {
+    Unsigned length = 0;
+    Unsigned stride = 0;  ///< 0: packed
+    Unsigned buffer = 0;
+    Unsigned offset = 0;
+    bool is_decoded = false;  ///< its bytes come out of a compression extension
+};
+
+/// Reads the buffers: those in the file, in data URIs, and beneath `folder`. preflight_buffers.cpp
+std::vector<GltfBuffer> read_buffers(const json& document, const GltfParts& parts, const std::filesystem::path& folder,
+                                     const Limits& limits);
+std::vector<View> read_views(const json& document, std::span<const GltfBuffer> buffers);
+/// The bytes of the file that `view` shows; empty when its buffer has no data.
+std::span<const std::byte> bytes_of(const View& view, std::span<const GltfBuffer> buffers);
+
+/// Accessors, sparse ones too, lie within their bufferViews; those without data are few. preflight_accessors.cpp
+void check_accessors(const json& document, std::span<const View> views, std::span<const GltfBuffer> buffers,
+                     const Limits& limits);
+
+/// What the headers of compressed payloads claim is what the document says, and not more than such a payload can hold.
+/// Marks the views whose bytes they give. preflight_compressed.cpp
+void check_compressed_views(const json& document, std::vector<View>& views, std::span<const GltfBuffer> buffers);
+/// Of each accessor: do its values come out of a Draco payload?
+std::vector<bool> check_compressed_meshes(const json& document, std::span<const View> views,
+                                          std::span<const GltfBuffer> buffers, const Limits& limits);
+
+std::vector<GltfImage> read_images(const json& document, std::span<const View> views,
+                                   std::span<const GltfBuffer> buffers);
+
+}  // namespace etalon::document
