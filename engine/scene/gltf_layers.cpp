@@ -13,6 +13,8 @@ namespace {
 
 constexpr double kHuge = std::numeric_limits<float>::max();
 
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
 constexpr std::array kLayerExtensions = {"KHR_materials_ior",          "KHR_materials_specular",
                                          "KHR_materials_clearcoat",    "KHR_materials_sheen",
                                          "KHR_materials_transmission", "KHR_materials_volume",
@@ -164,11 +166,11 @@ class Layers {
         Extension in = extension("KHR_materials_volume");
         const double thickness = in.real("thicknessFactor", 0, 0);
         const dvec3 color = in.color("attenuationColor", 1);
-        double distance = in.real("attenuationDistance", std::numeric_limits<double>::infinity());
+        double distance = in.real("attenuationDistance", kNever, -kHuge, kNever);
         if (!(distance > 0)) {
             in.warn("attenuationDistance",
                     fmt::format("{} is not above 0: nothing is absorbed [VALUE_NOT_IN_RANGE]", distance));
-            distance = std::numeric_limits<double>::infinity();
+            distance = kNever;
         }
         const double dispersion = extension("KHR_materials_dispersion").real("dispersion", 0, 0);
         if (out_.transmission == 0 || thickness == 0) return;
