@@ -322,9 +322,23 @@ void replace_file(const fs::path& path, std::span<const std::byte> bytes)
     replacement.take_place(mode);
 }
 
+void check_replaceable(const fs::path& path)
+{
+    static_cast<void>(check_target(follow_links(path), path));
+}
+
 void replace_file(const fs::path& path, std::string_view text)
 {
     replace_file(path, std::as_bytes(std::span(text)));
+}
+
+void make_folder(const std::filesystem::path& path)
+{
+    std::error_code failed;
+    std::filesystem::create_directories(path, failed);
+    if (failed)
+        throw Error(Blame::input, "cannot make the folder: " + failed.message(), "choose another with -o")
+            .at(path.string());
 }
 
 }  // namespace etalon

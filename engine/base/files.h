@@ -21,4 +21,11 @@ std::vector<std::byte> read_file(const std::filesystem::path& path, std::size_t 
 void replace_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
 void replace_file(const std::filesystem::path& path, std::string_view text);
 
+/// Throws what replace_file would throw of `path` itself, without writing: a folder or device in its place, a
+/// write-protected file. Before hours of rendering, not after.
+void check_replaceable(const std::filesystem::path& path);
+
+/// Makes the folder and its parents where they are absent. Throws Error(input).
+void make_folder(const std::filesystem::path& path);
+
 }  // namespace etalon

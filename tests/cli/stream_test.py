@@ -146,7 +146,7 @@ class Interrupted(Case):
         process.send_signal(signal.SIGTERM)
         started = time.monotonic()
         process.communicate(timeout=LIMIT_S)
-        self.assertEqual(process.returncode, 130)
+        self.assertIn(process.returncode, (130, 143))  # of two that wait, the kernel chooses the first
         self.assertLess(time.monotonic() - started, LIMIT_S / 2)
         self.assertNotIn("x.exr", os.listdir(self.folder))
 

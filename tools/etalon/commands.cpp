@@ -28,8 +28,7 @@ Command render_command()
                .letter = 'o',
                .argument = "FILE",
                .help = "Where to: .png (developed), .exr (radiance, variance, AOVs) or - (PNG on standard output); "
-                       "{name} is "
-                       "the scene's name; may be repeated",
+                       "{name} is the scene's name, #### the frame's number; may be repeated",
                .completes = Completes::file,
                .repeats = true,
                .heading = "Output"},
@@ -44,6 +43,8 @@ Command render_command()
                .help = "Also put depth, normal, albedo, emission, object and material id and uv into .exr files",
                .heading = "Output"}},
              view_rows(),
+             animation_rows(),
+             frame_rows(),
              light_rows(),
              shading_rows(),
              sampling_rows(),
@@ -57,9 +58,12 @@ Command render_command()
                       "A path-traced picture, with its radiance and error"},
                      {"etalon render a.glb b.glb --size 640x480 -o 'out/{name}.png'",
                       "Several scenes with one device start-up"},
+                     {"etalon render fox.glb --animation Run --frames 0:47 --fps 24 -o 'out/####.png'",
+                      "Two seconds of an animation"},
                      {"cat chair.glb | etalon render - -o - > chair.png", "From standard input to standard output"}},
         .exit_codes =
-            "0 written; 1 a finding under --strict; 2 bad usage or input; 3 the machine cannot; 130 interrupted",
+            "0 written; 1 a finding under --strict; 2 bad usage or input; 3 the machine cannot; 130 interrupted (143 "
+            "by SIGTERM, 129 by SIGHUP)",
         .run = render,
     };
 }
@@ -93,6 +97,7 @@ Command compare_command()
                                .standard = "0.001",
                                .heading = "Verdict"}},
                              view_rows(),
+                             animation_rows(),
                              light_rows(),
                              shading_rows(),
                              sampling_rows(),
@@ -104,7 +109,9 @@ Command compare_command()
         .examples = {{"etalon compare builtin:cornell -o out/cornell", "All renderers on a bundled scene"},
                      {"etalon compare chair.glb --renderers path,reference --spp 256 --size 256x256",
                       "The path tracer against the reference only"}},
-        .exit_codes = "0 they agree; 1 they do not; 2 bad usage or input; 3 the machine cannot; 130 interrupted",
+        .exit_codes =
+            "0 they agree; 1 they do not; 2 bad usage or input; 3 the machine cannot; 130 interrupted (143 by SIGTERM, "
+            "129 by SIGHUP)",
         .run = compare,
     };
 }
@@ -165,6 +172,58 @@ Command diff_command()
     };
 }
 
+Command tradeoff_command()
+{
+    return {
+        .name = "tradeoff",
+        .summary = "Measure what each speed/accuracy setting buys and costs on a scene",
+        .description =
+            "Renders SCENE again and again with other settings, one knob at a time and several at once, times each "
+            "picture and measures its error against a path-traced reference. Prints the settings that nothing else "
+            "beats in both (the frontier) and writes a page with the plot, the pictures and all values. Other work on "
+            "the machine widens the intervals.",
+        .argument = "SCENE",
+        .least = 1,
+        .most = 1,
+        .options = together({{{.name = "output",
+                               .letter = 'o',
+                               .argument = "FOLDER",
+                               .help = "Where the report goes; out/NAME-tradeoff when absent",
+                               .completes = Completes::folder,
+                               .heading = "Output"},
+                              {.name = "budget",
+                               .argument = "SECONDS",
+                               .help = "How long to measure",
+                               .standard = "60",
+                               .heading = "Measuring"},
+                              {.name = "quick",
+                               .help = "At most 15 seconds, 3 rounds, and one knob at a time only",
+                               .heading = "Measuring"},
+                              {.name = "renderer",
+                               .letter = 'r',
+                               .argument = "NAME",
+                               .help = "Whose settings",
+                               .standard = "both",
+                               .choices = {"both", "raster", "path"},
+                               .heading = "Measuring"}},
+                             view_rows(),
+                             animation_rows(),
+                             light_rows(),
+                             shading_rows(),
+                             sampling_rows(),
+                             develop_rows(),
+                             device_rows(),
+                             load_rows(),
+                             json_rows(),
+                             progress_rows()}),
+        .examples = {{"etalon tradeoff chair.glb",
+                      "A minute's measurement, and the page out/chair-tradeoff/tradeoff.html"},
+                     {"etalon tradeoff builtin:cornell --renderer path --budget 300 --json", "The path tracer alone"}},
+        .exit_codes = "0 measured; 2 bad usage or input; 3 the machine cannot; 130 interrupted",
+        .run = tradeoff,
+    };
+}
+
 Command explain_command()
 {
     return {
@@ -184,6 +243,7 @@ Command explain_command()
                                .choices = {"raster", "path", "reference", "reference-raster"},
                                .heading = "Output"}},
                              view_rows(),
+                             animation_rows(),
                              light_rows(),
                              shading_rows(),
                              sampling_rows(),
@@ -248,6 +308,7 @@ Command view_command()
                                .completes = Completes::file,
                                .heading = "Output"}},
                              view_rows(),
+                             animation_rows(),
                              light_rows(),
                              shading_rows(),
                              view_sampling_rows(),
@@ -299,9 +360,9 @@ Command man_command()
 
 const std::vector<Command>& commands()
 {
-    static const std::vector<Command> all = {render_command(),     compare_command(), diff_command(),
-                                             explain_command(),    info_command(),    view_command(),
-                                             completion_command(), man_command()};
+    static const std::vector<Command> all = {render_command(),   compare_command(),    diff_command(),
+                                             tradeoff_command(), explain_command(),    info_command(),
+                                             view_command(),     completion_command(), man_command()};
     return all;
 }
 

@@ -6,10 +6,11 @@
 #include "engine/measure/agreement.h"
 #include "engine/measure/rasters.h"
 #include "engine/scene/knobs.h"
-#include "etalon_version.h"
 #include "tools/etalon/arguments.h"
 #include "tools/etalon/interrupt.h"
+#include "tools/etalon/output.h"
 #include "tools/etalon/progress_display.h"
+#include "tools/etalon/provenance.h"
 #include "tools/etalon/renderers.h"
 #include "tools/etalon/scenes.h"
 #include "tools/etalon/settings.h"
@@ -75,36 +76,6 @@ Contender contender(const std::string& scene_name, const PosedScene& posed, cons
         .kind = renderer, .name = std::string(name(renderer)), .label = std::string(label(renderer)), .render = render};
 }
 
-/// What the user typed, so that the report says how to make it again.
-std::string command_line(const Arguments& arguments)
-{
-    std::string line = fmt::format("etalon {} {}", arguments.command().name, arguments.positional().front());
-    for (const Option& option : arguments.command().options) {
-        if (!arguments.has(option.name) || option.name == "progress") continue;
-        line += " --" + option.name;
-        if (!option.argument.empty()) line += " " + *arguments.text(option.name);
-    }
-    return line;
-}
-
-NamedValues describe(const PosedScene& posed, const RenderSettings& settings)
-{
-    NamedValues values = {{"size", fmt::format("{}x{}", posed.view.width, posed.view.height)},
-                          {"seed", fmt::format("{}", settings.seed)}};
-    for (const Knob& knob : knobs()) values.emplace_back(knob.name, knob_value(settings, knob.name));
-    return values;
-}
-
-NamedValues versions()
-{
-    NamedValues values = {{"etalon", std::string(kVersionFull)}, {"compiler", std::string(kCompiler)}};
-    for (const std::string& line : gpu::vulkan_versions()) {
-        const std::size_t space = line.rfind(' ');
-        values.emplace_back(line.substr(0, space), space == std::string::npos ? "" : line.substr(space + 1));
-    }
-    return values;
-}
-
 }  // namespace
 
 int compare(const Arguments& arguments)
@@ -116,6 +87,8 @@ int compare(const Arguments& arguments)
     CompareSettings comparing{.rounding = kDeviceRounding};
     comparing.false_alarm = arguments.number("false-alarm", 1e-12, 0.5).value_or(comparing.false_alarm);
     const PoseSettings view = pose_settings(arguments);
+
+    check_folder(folder);
 
     const Interrupt interrupt;
     Renderers renderers(arguments);
@@ -146,7 +119,7 @@ int compare(const Arguments& arguments)
     const std::vector<std::filesystem::path> written = write_report(report, folder);
     put(arguments.has("json") ? report_json(report) : report_table(report));
     say(fmt::format("report: {}", written.front().string()));
-    if (interrupt.stopped()) return kInterruptedExitCode;
+    if (interrupt.stopped()) return interrupt.exit_code();
     return passed(report) ? 0 : 1;
 }
 

@@ -10,22 +10,17 @@ namespace {
 
 // A signal handler can reach nothing but statics: the one place in this project where state is global.
 std::atomic<bool> stop_requested{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may touch lock-free atomics only");
+std::atomic<int> stop_exit_code{0};
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free,
+              "a signal handler may touch lock-free atomics only");
 
-extern "C" void on_signal(int)
+extern "C" void on_signal(int number)
 {
-    if (stop_requested.exchange(true)) _exit(kInterruptedExitCode);
+    int none = 0;
+    stop_exit_code.compare_exchange_strong(none, 128 + number);  // the shells' convention
+    if (stop_requested.exchange(true)) _exit(stop_exit_code);
     constexpr std::string_view kText = "\netalon: finishing this pass; once more to stop at once\n";
     [[maybe_unused]] const auto written = write(STDERR_FILENO, kText.data(), kText.size());
-}
-
-void handle(int number, void (*handler)(int))
-{
-    struct sigaction action = {};
-    action.sa_handler = handler;
-    sigemptyset(&action.sa_mask);
-    action.sa_flags = SA_RESTART;
-    sigaction(number, &action, nullptr);
 }
 
 }  // namespace
@@ -33,19 +28,30 @@ void handle(int number, void (*handler)(int))
 Interrupt::Interrupt()
 {
     stop_requested = false;
-    handle(SIGINT, on_signal);
-    handle(SIGTERM, on_signal);
+    stop_exit_code = 0;
+    struct sigaction action = {};
+    action.sa_handler = on_signal;
+    sigemptyset(&action.sa_mask);
+    action.sa_flags = SA_RESTART;
+    for (std::size_t i = 0; i < kSignals.size(); ++i) {
+        sigaction(kSignals[i], nullptr, &before_[i]);
+        if (before_[i].sa_handler != SIG_IGN) sigaction(kSignals[i], &action, nullptr);
+    }
 }
 
 Interrupt::~Interrupt()
 {
-    handle(SIGINT, SIG_DFL);
-    handle(SIGTERM, SIG_DFL);
+    for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &before_[i], nullptr);
 }
 
 const std::atomic<bool>* Interrupt::flag() const
 {
     return &stop_requested;
+}
+
+int Interrupt::exit_code() const
+{
+    return stop_exit_code;
 }
 
 }  // namespace etalon::cli

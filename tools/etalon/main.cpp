@@ -81,6 +81,8 @@ int main(int argc, char** argv)
 {
     using namespace etalon;
     std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is an error code of write(), not a death
+    std::signal(SIGXFSZ, SIG_IGN);  // and so is the limit on the size of files
+    cli::reserve_standard_streams();
     const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
     // Known before parsing, so that a parse that fails says so as JSON too.
     const bool json = std::find(words.begin(), words.end(), "--json") != words.end();

@@ -57,8 +57,9 @@ int man(const Arguments&)
     text +=
         ".SH EXIT STATUS\n.TP\n.B 0\nFine.\n.TP\n.B 1\nThe comparison or check failed.\n.TP\n.B 2\nBad usage or bad "
         "input.\n.TP\n.B 3\n"
-        "The machine cannot: no device, out of memory, device lost.\n.TP\n.B 130\nInterrupted; what was rendered so "
-        "far has been written.\n"
+        "The machine cannot: no device, out of memory, device lost.\n.TP\n.B 130\nInterrupted (143 by SIGTERM, 129 by "
+        "SIGHUP); what was "
+        "rendered so far has been written.\n"
         ".SH ENVIRONMENT\n.TP\n.B NO_COLOR\nWhen set and not empty, no colours on the terminal.\n.TP\n.B "
         "VK_DRIVER_FILES\n"
         "Which Vulkan drivers the loader offers.\n";

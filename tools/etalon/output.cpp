@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 
 #include "engine/base/error.h"
+#include "engine/base/files.h"
 #include "engine/image/io.h"
 #include "tools/etalon/terminal.h"
 
@@ -16,17 +19,31 @@ void check_output(const std::string& path)
 {
     if (path == "-") return;
     static_cast<void>(picture_format(path));  // throws for an extension that is none of ours
-    const auto refuse = [&](std::string why, std::string mend) {
-        throw Error(Blame::input, fmt::format("cannot write {}: {}", path, why), std::move(mend));
-    };
+    const fs::path folder = fs::path(path).parent_path();
+    check_folder(folder);
+    check_replaceable(path);
+    if (folder.empty()) return;
     std::error_code fault;
-    if (fs::is_directory(path, fault)) refuse("it is a folder", "name a file in it");
-    const fs::path folder = fs::absolute(path).parent_path();
     fs::create_directories(folder, fault);
-    if (!fs::is_directory(folder))
-        refuse(fmt::format("its folder cannot be made ({})", fault.message()), "choose another place");
-    if (access(folder.c_str(), W_OK) != 0)
-        refuse("its folder may not be written to", "choose another place or change its permissions");
+    if (fault)
+        throw Error(Blame::input, fmt::format("cannot make the folder {}: {}", folder.string(), fault.message()),
+                    "choose another place");
+}
+
+void check_folder(const fs::path& path)
+{
+    std::error_code fault;
+    fs::path nearest = path.lexically_normal();
+    while (!nearest.empty() && nearest != nearest.root_path() && !fs::exists(nearest, fault))
+        nearest = nearest.parent_path();
+    if (nearest.empty()) nearest = ".";
+    const bool is_folder = fs::is_directory(nearest, fault);
+    if (is_folder && access(nearest.c_str(), W_OK) == 0) return;
+    throw Error(Blame::input,
+                fmt::format("cannot write to {}: {}{}", path.empty() ? "the current folder" : path.string(),
+                            nearest == path || path.empty() ? "" : nearest.string() + ": ",
+                            is_folder ? std::strerror(errno) : "no folder"),
+                "choose another place, or change its permissions");
 }
 
 void write_output(const Film& film, const DevelopSettings& settings, const std::string& path)

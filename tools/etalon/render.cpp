@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "engine/base/error.h"
 #include "tools/etalon/arguments.h"
+#include "tools/etalon/frames.h"
 #include "tools/etalon/interrupt.h"
 #include "tools/etalon/json.h"
 #include "tools/etalon/output.h"
@@ -18,13 +20,13 @@
 namespace etalon::cli {
 namespace {
 
-/// One scene and where its picture goes.
+/// One scene and where its pictures go.
 struct Job {
     std::string scene;
-    std::vector<std::string> outputs;
+    std::vector<std::vector<std::string>> outputs;  ///< of each frame
 };
 
-std::vector<Job> plan(const Arguments& arguments)
+std::vector<Job> plan(const Arguments& arguments, const std::vector<Frame>& frames)
 {
     const std::vector<std::string> patterns = arguments.all("output");
     if (patterns.empty())
@@ -33,11 +35,14 @@ std::vector<Job> plan(const Arguments& arguments)
     std::set<std::string> taken;
     for (const std::string& scene : arguments.positional()) {
         Job job{.scene = scene, .outputs = {}};
-        for (const std::string& pattern : patterns) {
-            job.outputs.push_back(with_name(pattern, short_name(scene)));
-            if (!taken.insert(job.outputs.back()).second)
-                throw Error(Blame::input, fmt::format("two pictures would be written to {}", job.outputs.back()),
-                            "put {name} into the output: -o 'out/{name}.png'");
+        for (const Frame& frame : frames) {
+            std::vector<std::string>& outputs = job.outputs.emplace_back();
+            for (const std::string& pattern : patterns) {
+                outputs.push_back(with_name(with_number(pattern, frame), short_name(scene)));
+                if (!taken.insert(outputs.back()).second)
+                    throw Error(Blame::input, fmt::format("two pictures would be written to {}", outputs.back()),
+                                "put {name} into the output: -o 'out/{name}.png'");
+            }
         }
         jobs.push_back(std::move(job));
     }
@@ -52,6 +57,9 @@ struct Seconds {
 };
 
 struct Picture {
+    std::string scene;
+    Frame frame;
+    std::vector<std::string> outputs;
     Film film;
     std::vector<StageTime> stages;  ///< of the rendering
     std::vector<std::string> notes;
@@ -59,18 +67,17 @@ struct Picture {
     bool interrupted = false;
 };
 
-void tell(const Job& job, const Picture& picture, const RenderSettings& settings)
+void tell(const Picture& picture, const RenderSettings& settings)
 {
     const Film& film = picture.film;
     const std::string samples = film.samples > 1 ? fmt::format(", {} spp", film.samples) : "";
-    for (const std::string& output : job.outputs)
+    for (const std::string& output : picture.outputs)
         say(fmt::format("{}: {}x{}, {}{}, {}; error {}", output == "-" ? "standard output" : output, film.width,
                         film.height, label(settings.renderer), samples, describe_seconds(picture.seconds.render),
                         describe_error(film, settings.renderer)));
 }
 
-Json as_json(const Job& job, const Picture& picture, const RenderSettings& settings,
-             const std::vector<std::string>& findings)
+Json as_json(const Picture& picture, const RenderSettings& settings, const std::vector<std::string>& findings)
 {
     const Film& film = picture.film;
     Json error;
@@ -80,8 +87,10 @@ Json as_json(const Job& job, const Picture& picture, const RenderSettings& setti
     std::vector<std::pair<std::string, Json>> stages;
     for (const StageTime& stage : picture.stages) stages.emplace_back(stage.stage, stage.seconds);
     return Json::object(
-        {{"scene", job.scene},
-         {"outputs", job.outputs},
+        {{"scene", picture.scene},
+         {"outputs", picture.outputs},
+         {"frame", picture.frame.number ? Json(*picture.frame.number) : Json()},
+         {"time_seconds", picture.frame.time ? Json(*picture.frame.time) : Json()},
          {"renderer", name(settings.renderer)},
          {"device", film.metadata.at("device")},
          {"width", film.width},
@@ -99,17 +108,15 @@ Json as_json(const Job& job, const Picture& picture, const RenderSettings& setti
          {"render_stages", Json::object(stages)}});
 }
 
-Picture make(const Job& job, const Arguments& arguments, const RenderSettings& settings, Renderers& renderers,
-             const Progress& progress)
+Picture make(const Scene& scene, PoseSettings view, Picture picture, const RenderSettings& settings,
+             Renderers& renderers, const Progress& progress)
 {
-    Picture picture;
     Stopwatch stopwatch;
-    const Scene scene = open_scene(job.scene, arguments);
-    picture.seconds.load = stopwatch.lap();
-    const PosedScene posed = pose(scene, pose_settings(arguments));
+    view.time = picture.frame.time;
+    const PosedScene posed = pose(scene, view);
     picture.notes = posed.notes;
     picture.seconds.pose = stopwatch.lap();
-    Drawn drawn = renderers.draw(job.scene, posed, settings, progress);
+    Drawn drawn = renderers.draw(picture.scene, posed, settings, progress);
     picture.film = std::move(drawn.film);
     picture.stages = std::move(drawn.stages);
     picture.seconds.render = stopwatch.lap();
@@ -117,49 +124,87 @@ Picture make(const Job& job, const Arguments& arguments, const RenderSettings& s
     return picture;
 }
 
-void write(const Job& job, Picture& picture, const DevelopSettings& develop)
+void write(Picture& picture, const DevelopSettings& develop)
 {
     Stopwatch stopwatch;
-    for (const std::string& output : job.outputs) write_output(picture.film, develop, output);
+    for (const std::string& output : picture.outputs) write_output(picture.film, develop, output);
     picture.seconds.write = stopwatch.lap();
+}
+
+/// What all pictures of a run share.
+struct Run {
+    const Arguments& arguments;
+    const std::vector<Frame> frames;
+    const PoseSettings view;
+    const RenderSettings settings;
+    const DevelopSettings develop;
+    const Terminal terminal;
+    const Interrupt interrupt;
+    Renderers renderers;
+    std::vector<Json> results;
+    bool suspicious = false;
+};
+
+/// Writes the picture and says what is to be said of it. False when it was interrupted before there was anything.
+bool finish(Run& run, Picture& picture)
+{
+    if (picture.film.samples == 0) {
+        warn(run.terminal,
+             fmt::format("{}: interrupted before the first pass was done; nothing was written", picture.scene));
+        return false;
+    }
+    write(picture, run.develop);
+    tell(picture, run.settings);
+    const std::vector<std::string> findings = suspicions(picture.film);
+    for (const std::string& finding : findings) warn(run.terminal, fmt::format("{}: {}", picture.scene, finding));
+    run.suspicious = run.suspicious || !findings.empty();
+    run.results.push_back(as_json(picture, run.settings, findings));
+    return true;
+}
+
+/// All frames of one scene; false when the run is to end.
+bool render_scene(Run& run, const Job& job)
+{
+    Stopwatch stopwatch;
+    const Scene scene = open_scene(job.scene, run.arguments);
+    double load = stopwatch.lap();
+    PoseSettings view = run.view;
+    if (run.frames.size() > 1) view.framed = bounds_over(scene, view, run.frames);
+    for (std::size_t i = 0; i < run.frames.size(); ++i) {
+        ProgressDisplay display(run.arguments);
+        Picture picture{.scene = job.scene, .frame = run.frames[i], .outputs = job.outputs[i]};
+        picture.seconds.load = std::exchange(load, 0);
+        picture = make(scene, view, std::move(picture), run.settings, run.renderers,
+                       display.progress(short_name(job.scene), run.interrupt.flag()));
+        display.clear();
+        if (i == 0)
+            for (const std::string& note : picture.notes) say(fmt::format("{}: {}", job.scene, note));
+        if (!finish(run, picture) || run.interrupt.stopped()) return false;
+    }
+    return true;
 }
 
 }  // namespace
 
 int render(const Arguments& arguments)
 {
-    const Terminal terminal = Terminal::of_standard_error();
-    const RenderSettings settings = render_settings(arguments);
-    const DevelopSettings develop = develop_settings(arguments);
-    static_cast<void>(pose_settings(arguments));  // a misspelt view is refused before the first scene is loaded
-    const std::vector<Job> jobs = plan(arguments);
-
-    const Interrupt interrupt;
-    Renderers renderers(arguments);
-    std::vector<Json> results;
-    bool suspicious = false;
-    for (const Job& job : jobs) {
-        ProgressDisplay display(arguments);
-        Picture picture =
-            make(job, arguments, settings, renderers, display.progress(short_name(job.scene), interrupt.flag()));
-        display.clear();
-        for (const std::string& note : picture.notes) say(fmt::format("{}: {}", job.scene, note));
-        if (picture.film.samples == 0) {
-            warn(terminal,
-                 fmt::format("{}: interrupted before the first pass was done; nothing was written", job.scene));
-            break;
-        }
-        write(job, picture, develop);
-        tell(job, picture, settings);
-        const std::vector<std::string> findings = suspicions(picture.film);
-        for (const std::string& finding : findings) warn(terminal, fmt::format("{}: {}", job.scene, finding));
-        suspicious = suspicious || !findings.empty();
-        results.push_back(as_json(job, picture, settings, findings));
-        if (interrupt.stopped()) break;
-    }
-    if (arguments.has("json")) put(Json::object({{"schema", "etalon-render/1"}, {"pictures", results}}).text() + "\n");
-    if (interrupt.stopped()) return kInterruptedExitCode;
-    return suspicious && arguments.has("strict") ? 1 : 0;
+    const std::vector<Frame> wanted = frames(arguments);
+    // Whatever is misspelt is refused before the first scene is loaded.
+    Run run{.arguments = arguments,
+            .frames = wanted,
+            .view = pose_settings(arguments),
+            .settings = render_settings(arguments),
+            .develop = develop_settings(arguments),
+            .terminal = Terminal::of_standard_error(),
+            .interrupt = {},
+            .renderers = Renderers(arguments),
+            .results = {}};
+    for (const Job& job : plan(arguments, wanted))
+        if (!render_scene(run, job)) break;
+    if (arguments.has("json"))
+        put(Json::object({{"schema", "etalon-render/1"}, {"pictures", run.results}}).text() + "\n");
+    if (run.interrupt.stopped()) return run.interrupt.exit_code();
+    return run.suspicious && arguments.has("strict") ? 1 : 0;
 }
 
 }  // namespace etalon::cli

@@ -33,8 +33,8 @@ std::vector<std::byte> read_stdin()
 Scene open_scene(const std::string& argument, const Arguments& arguments)
 {
     const LoadOptions options{.strict = arguments.has("strict")};
-    Scene scene = argument == "-" ? parse_gltf(read_stdin(), std::filesystem::current_path(), "standard input", options)
-                                  : load_scene(argument, options);
+    Scene scene =
+        argument == "-" ? parse_gltf(read_stdin(), {}, "standard input", options) : load_scene(argument, options);
     const Terminal terminal = Terminal::of_standard_error();
     for (const std::string& warning : scene.warnings) warn(terminal, fmt::format("{}: {}", argument, warning));
     return scene;

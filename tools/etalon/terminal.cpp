@@ -1,5 +1,6 @@
 #include "tools/etalon/terminal.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -35,6 +36,13 @@ void write_stdout(const char* data, std::size_t size)
 }
 
 }  // namespace
+
+void reserve_standard_streams()
+{
+    // A descriptor that can neither be read nor written, so that use is an error and not silence.
+    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+        if (fcntl(stream, F_GETFD) == -1) open("/", O_PATH);
+}
 
 Terminal Terminal::of_standard_error()
 {

@@ -6,6 +6,10 @@
 
 namespace etalon::cli {
 
+/// Puts something in the place of standard streams that were closed when the program began, else the next file to be
+/// opened would take their number and receive what is meant for people. Reading or writing there still fails.
+void reserve_standard_streams();
+
 /// How the program speaks: data goes to standard output, everything said about it to standard error.
 struct Terminal {
     bool colour = false;    ///< standard error takes colours: a terminal, NO_COLOR unset or empty, TERM not "dumb"

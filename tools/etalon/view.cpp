@@ -24,7 +24,7 @@ int view(const Arguments& arguments)
     const Scene scene = open_scene(arguments.positional().front(), arguments);
     say(view_help());
     etalon::view(scene, options);
-    return interrupt.stopped() ? kInterruptedExitCode : 0;
+    return interrupt.stopped() ? interrupt.exit_code() : 0;
 }
 
 }  // namespace etalon::cli
