@@ -229,9 +229,11 @@ bool Device::supports(VkFormat format, VkFormatFeatureFlags features, std::uint3
                                     : depth      ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT
                                                  : VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
     VkImageFormatProperties can{};
-    return vk.vkGetPhysicalDeviceImageFormatProperties(state_->physical, format, VK_IMAGE_TYPE_2D,
-                                                       VK_IMAGE_TILING_OPTIMAL, usage, 0, &can) == VK_SUCCESS &&
-           (can.sampleCounts & samples) != 0;
+    const VkResult result = vk.vkGetPhysicalDeviceImageFormatProperties(state_->physical, format, VK_IMAGE_TYPE_2D,
+                                                                        VK_IMAGE_TILING_OPTIMAL, usage, 0, &can);
+    if (result == VK_ERROR_FORMAT_NOT_SUPPORTED) return false;
+    check(result, "vkGetPhysicalDeviceImageFormatProperties");
+    return (can.sampleCounts & samples) != 0;
 }
 
 bool Device::finished(Ticket ticket) const

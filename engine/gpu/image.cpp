@@ -29,6 +29,7 @@ void check_limits(const DeviceState& state, const ImageSpec& spec, VkImageUsageF
     VkImageFormatProperties can{};
     const VkResult result = state.instance.vk.vkGetPhysicalDeviceImageFormatProperties(
         state.physical, spec.format, VK_IMAGE_TYPE_2D, VK_IMAGE_TILING_OPTIMAL, usage, 0, &can);
+    if (result != VK_ERROR_FORMAT_NOT_SUPPORTED) check(result, "vkGetPhysicalDeviceImageFormatProperties");
     if (result != VK_SUCCESS || (can.sampleCounts & spec.samples) == 0)
         throw Error(Blame::machine,
                     fmt::format("image \"{}\": this device cannot use format {} with {} samples in this way", spec.name,

@@ -47,10 +47,9 @@ struct PathTracer::State {
     std::uint32_t width = 0, height = 0;
     std::uint32_t wave = kWaveCapacity / 2;  ///< paths of the next wave, adapted to the scene's speed
 
-    FilmSum total{1, 1};                         ///< of completed blocks
-    std::uint64_t nonfinite = 0, truncated = 0;  ///< of completed blocks
-    std::uint64_t first_of_block = 0;            ///< sample number
-    std::uint32_t in_block = 0;                  ///< samples of completed passes of this block
+    PathSamples total{.sum = {1, 1}};  ///< of completed blocks
+    std::uint64_t first_of_block = 0;  ///< sample number
+    std::uint32_t in_block = 0;        ///< samples of completed passes of this block
 
     std::uint32_t in_pass = 0;  ///< samples a pixel of the pass at hand; 0: none
     std::size_t band = 0;       ///< where the pass at hand stands
@@ -214,7 +213,7 @@ void PathTracer::State::finish(Commands& commands)
 void PathTracer::State::begin_pass(std::uint64_t most_samples)
 {
     if (in_block == kBlockSamples) {
-        read_block(total, nonfinite, truncated);
+        read_block(total.sum, total.nonfinite, total.truncated);
         first_of_block += in_block;
         in_block = 0;
     }
@@ -361,9 +360,19 @@ void PathTracer::start(const View& view)
     s.resize(view);
     set_view(s.scene.frame, view, s.scene.origin);
     gpu::upload(*s.device, s.frame, std::as_bytes(std::span(&s.scene.frame, 1)));
-    s.total = FilmSum(view.width, view.height);
-    s.nonfinite = s.truncated = s.first_of_block = 0;
-    s.in_block = s.in_pass = 0;
+    resume({.sum = {view.width, view.height}});
+}
+
+PathSamples PathTracer::kept() const
+{
+    return state_->total;
+}
+
+void PathTracer::resume(const PathSamples& kept)
+{
+    state_->total = kept;
+    state_->first_of_block = kept.sum.samples();
+    state_->in_block = state_->in_pass = 0;
 }
 
 bool PathTracer::step(std::uint64_t most_samples)
@@ -405,13 +414,11 @@ double PathTracer::pass_fraction() const
 Film PathTracer::film()
 {
     State& s = *state_;
-    FilmSum sum = s.total;
-    std::uint64_t nonfinite = s.nonfinite;
-    std::uint64_t truncated = s.truncated;
-    if (s.in_block > 0) s.read_block(sum, nonfinite, truncated);
-    Film film = sum.film();
-    film.nonfinite = nonfinite;
-    film.truncated = truncated;
+    PathSamples all = s.total;
+    if (s.in_block > 0) s.read_block(all.sum, all.nonfinite, all.truncated);
+    Film film = all.sum.film();
+    film.nonfinite = all.nonfinite;
+    film.truncated = all.truncated;
     if (s.wants_aovs) s.read_aovs(film);
     return film;
 }

@@ -18,6 +18,13 @@ struct KernelTime {
     double milliseconds = 0;
 };
 
+/// What a path tracer has measured and read from the device: whole blocks of 256 samples a pixel.
+struct PathSamples {
+    FilmSum sum;
+    std::uint64_t nonfinite = 0;
+    std::uint64_t truncated = 0;
+};
+
 /// Which kernels find what rays meet: the ones that suit the device, or everywhere those of GPUs, one ray an invocation
 /// with a stack in memory. The picture is the same to the bit.
 enum class Traversal { by_device, exact };
@@ -47,6 +54,10 @@ class PathTracer {
     double pass_fraction() const;
     /// What completed passes measured. AOVs where settings ask for them.
     Film film();
+    /// What outlives the device, and can go on in another tracer of the same scene, settings and view, to the same
+    /// bits.
+    PathSamples kept() const;
+    void resume(const PathSamples& kept);
     /// Off by default: timing makes each kernel wait for the one before.
     void measure_kernels(bool on);
     /// Sums since construction, while measure_kernels was on.

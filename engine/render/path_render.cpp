@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <optional>
 
 #include "engine/render/path.h"
 #include "engine/render/render.h"
@@ -13,14 +14,9 @@ double seconds_since(std::chrono::steady_clock::time_point start)
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-}  // namespace
-
-Film render_path(gpu::Device& device, const PosedScene& posed, const Requirements& required,
-                 const RenderSettings& settings, const Progress& progress)
+/// Adds samples until there are enough or `progress` stops it.
+void trace(PathTracer& tracer, const RenderSettings& settings, const Progress& progress)
 {
-    const auto begin = std::chrono::steady_clock::now();
-    PathTracer tracer(device, posed, required, settings, progress);
-    const double preparing = seconds_since(begin);
     auto last_report = std::chrono::steady_clock::now();
     ProgressUpdate update;
     update.stage = "path tracing";
@@ -37,11 +33,36 @@ Film render_path(gpu::Device& device, const PosedScene& posed, const Requirement
         }
         progress.report(update);
     }
-    const double tracing = seconds_since(begin) - preparing;
-    Film film = tracer.film();
-    film.metadata["milliseconds.scene"] = fmt::format("{:.3f}", 1e3 * preparing);
-    film.metadata["milliseconds.path tracing"] = fmt::format("{:.3f}", 1e3 * tracing);
-    return film;
+}
+
+}  // namespace
+
+Film render_path(gpu::Device& device, const PosedScene& posed, const Requirements& required,
+                 const RenderSettings& settings, const Progress& progress)
+{
+    std::optional<PathSamples> kept;
+    for (bool renewed = false;; renewed = true) {
+        if (renewed) {
+            progress.report({.stage = "starting the lost device again"});
+            device.renew();
+        }
+        const auto begin = std::chrono::steady_clock::now();
+        std::optional<PathTracer> tracer;
+        try {
+            tracer.emplace(device, posed, required, settings, progress);
+            const double preparing = seconds_since(begin);
+            if (kept) tracer->resume(*kept);
+            trace(*tracer, settings, progress);
+            const double tracing = seconds_since(begin) - preparing;
+            Film film = tracer->film();
+            film.metadata["milliseconds.scene"] = fmt::format("{:.3f}", 1e3 * preparing);
+            film.metadata["milliseconds.path tracing"] = fmt::format("{:.3f}", 1e3 * tracing);
+            return film;
+        } catch (const gpu::DeviceLost&) {
+            if (renewed) throw;
+            if (tracer) kept = tracer->kept();
+        }
+    }
 }
 
 }  // namespace etalon
