@@ -1,5 +1,4 @@
 #pragma once
-#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -9,6 +8,7 @@
 #include "engine/gpu/commands.h"
 #include "engine/image/film.h"
 #include "engine/render/environment.h"
+#include "engine/render/raster_behind.h"
 #include "engine/render/raster_emitters.h"
 #include "engine/render/raster_frame.h"
 #include "engine/render/raster_geometry.h"
@@ -54,9 +54,10 @@ class RasterScene {
         const gpu::GraphicsPipeline* color = nullptr;
         const gpu::GraphicsPipeline* aovs = nullptr;  ///< null: not asked for
         const gpu::Bindings* textures = nullptr;
-        bool culled = false;    ///< back faces are not drawn
-        bool mirrored = false;  ///< fronts are clockwise
-        dvec3 center{0};        ///< world, metres: what BLEND is sorted by (SH-32)
+        bool transmits = false;  ///< drawn after what it shows, but for BLEND, which is drawn last anyway
+        bool culled = false;     ///< back faces are not drawn
+        bool mirrored = false;   ///< fronts are clockwise
+        dvec3 center{0};         ///< world, metres: what BLEND is sorted by (SH-32)
     };
     void add_items(const Progress& progress);
     Item item_of(std::uint32_t draw);
@@ -65,15 +66,26 @@ class RasterScene {
     const gpu::Bindings& texture_bindings(const gpu::Layout& layout, const Material& material,
                                           const RasterVariant& variant);
     void add_environment();
-    void bind_frame();
+    void add_background(bool environment);
+    void add_albedo();
+    using FrameBindings = std::map<RasterShape, gpu::Bindings>;
+    FrameBindings bind_frame(const gpu::Image& behind) const;
     void resize(const View& view);
     void write_frame(const View& view);
     void draw_color(gpu::Commands& commands, const View& view);
+    void draw_passes(gpu::Commands& commands, const View& view, bool behind);
+    void draw_background(gpu::Commands& commands) const;
     void draw_aovs(gpu::Commands& commands, const View& view);
-    void draw_items(gpu::Commands& commands, const View& view, AlphaMode mode, RasterTarget target) const;
+    /// The items that `wanted` says, in their order.
+    struct Selection {
+        AlphaMode mode = AlphaMode::opaque;
+        bool transmits = false;  ///< of no meaning to BLEND
+    };
+    void draw_items(gpu::Commands& commands, const View& view, const Selection& wanted, RasterTarget target,
+                    const FrameBindings& frame) const;
     void draw_mesh(gpu::Commands& commands, const View& view, const Item& item) const;
     void draw_sphere(gpu::Commands& commands, const View& view, const Item& item) const;
-    std::vector<const Item*> ordered(AlphaMode mode, const View& view) const;
+    std::vector<const Item*> ordered(const Selection& wanted, const View& view) const;
     bool draws_background() const { return background_ != nullptr; }
 
     gpu::Device& device_;
@@ -91,14 +103,19 @@ class RasterScene {
     gpu::Image environment_map_;
     gpu::Buffer frame_;
     gpu::Buffer materials_;
+    gpu::Buffer layers_;
+    gpu::Buffer albedo_;  // shaders/shared/albedo.h; one cell where nothing needs it
     gpu::Buffer lights_;
     std::vector<RasterEmitter> emitters_;
     gpu::Buffer emitter_records_;
     std::vector<Item> items_;
-    std::map<std::array<Index, 5>, gpu::Bindings> texture_bindings_;  // by the textures read
-    const gpu::GraphicsPipeline* background_ = nullptr;               // null: cleared
+    std::map<RasterTextures::Key, gpu::Bindings> texture_bindings_;
+    const gpu::GraphicsPipeline* background_ = nullptr;  // null: cleared
     gpu::Bindings background_map_;
-    std::map<RasterShape, gpu::Bindings> frame_bindings_;
+    std::optional<RasterBehind> behind_;  // nothing: no item transmits
+    gpu::Image nothing_behind_;
+    FrameBindings frame_bindings_;
+    FrameBindings behind_bindings_;  // with the picture behind transmitting surfaces
     RasterTargets targets_;
     std::optional<gpu::Commands> commands_;  // of the last draw
 };

@@ -48,7 +48,7 @@ RasterProjection project(const View& view, const dvec3& bounds_min, const dvec3&
 }
 
 shared::RasterFrame make_frame(const PosedScene& posed, const View& view, const EnvironmentTables* tables,
-                               std::uint32_t light_count, std::uint32_t emitter_count)
+                               std::uint32_t light_count, std::uint32_t emitter_count, const dvec3& background)
 {
     const RasterProjection projection = project(view, posed.bounds_min, posed.bounds_max);
     const dmat3 rotation = world_from_camera(view);
@@ -65,7 +65,8 @@ shared::RasterFrame make_frame(const PosedScene& posed, const View& view, const 
         .depth_range = vec2(dvec2(projection.near, projection.far)),
         .mirror_size = uvec2(0),
         .light_count = light_count,
-        .emitter_count = emitter_count};
+        .emitter_count = emitter_count,
+        .background = vec4(dvec4(background, 1))};
     if (tables != nullptr) {
         for (std::size_t i = 0; i < tables->irradiance.size(); ++i)
             frame.irradiance[i] = vec3(tables->irradiance[i] * environment.scale);
@@ -88,6 +89,7 @@ void place(const dmat4& world_from_object, const dvec3& eye, shared::RasterDraw&
     const dmat3 unit = m / (largest > 0 ? largest : 1.0);
     const double sign = is_mirrored(world_from_object) ? -1 : 1;
     draw.handedness = static_cast<float>(sign);
+    draw.scale = static_cast<float>(std::cbrt(std::abs(dot(cross(m[0], m[1]), m[2]))));
     draw.normal_matrix = mat3(sign * cofactor(unit));
 }
 

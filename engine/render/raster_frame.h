@@ -16,9 +16,10 @@ struct RasterProjection {
 };
 RasterProjection project(const View& view, const dvec3& bounds_min, const dvec3& bounds_max);
 
-/// What a frame of `posed` seen by `view` tells its shaders; `tables` null where there is no environment map.
+/// What a frame of `posed` seen by `view` tells its shaders; `tables` null where there is no environment map;
+/// `background`: the colour behind everything where that is not the environment.
 shared::RasterFrame make_frame(const PosedScene& posed, const View& view, const EnvironmentTables* tables,
-                               std::uint32_t light_count, std::uint32_t emitter_count);
+                               std::uint32_t light_count, std::uint32_t emitter_count, const dvec3& background);
 
 /// world_from_object relative to the eye (TF-2), and the normal matrix scaled so that nothing under- or overflows.
 void place(const dmat4& world_from_object, const dvec3& eye, shared::RasterDraw& draw);

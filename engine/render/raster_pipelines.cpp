@@ -74,10 +74,11 @@ gpu::GraphicsPipelineSpec RasterPipelines::describe(const RasterVariant& variant
                                    .streams = {},
                                    .attributes = {},
                                    .colors = {},
+                                   // The background goes where nothing has been drawn: infinitely far.
                                    .depth = {.format = kRasterDepth,
-                                             .test = !background,
+                                             .test = true,
                                              .write = !background && !blends,
-                                             .passes = VK_COMPARE_OP_GREATER},
+                                             .passes = background ? VK_COMPARE_OP_EQUAL : VK_COMPARE_OP_GREATER},
                                    .samples = aovs ? 1 : variant.get(RasterConstant::samples),
                                    .topology = topology(variant.topology),
                                    .cull = VK_CULL_MODE_NONE,

@@ -1,5 +1,6 @@
 #include "engine/render/raster_targets.h"
 
+#include <algorithm>
 #include <array>
 #include <span>
 #include <vector>
@@ -40,12 +41,30 @@ void read_aovs(gpu::Device& device, RasterTargets& targets, Aovs& aovs)
 
 }  // namespace
 
-RasterTargets make_targets(gpu::Device& device, ivec2 size, std::uint32_t samples, bool aovs)
+uvec2 size_of_levels(ivec2 picture)
+{
+    const auto width = static_cast<std::uint32_t>(picture.x), height = static_cast<std::uint32_t>(picture.y);
+    const std::uint32_t levels = gpu::mip_count(width, height);
+    std::uint32_t below = 0;  // the levels under the picture, side by side
+    for (std::uint32_t level = 1; level < levels; ++level) below += std::max(1u, width >> level);
+    return {std::max(width, below), height + (levels > 1 ? std::max(1u, height >> 1) : 0)};
+}
+
+RasterTargets make_targets(gpu::Device& device, ivec2 size, std::uint32_t samples, bool aovs, bool levels)
 {
     RasterTargets targets;
     if (samples > 1) targets.color = make_target(device, size, kRasterColor, samples, "colour samples");
     targets.depth = make_target(device, size, kRasterDepth, samples, "depth samples");
     targets.resolved = make_target(device, size, kRasterColor, 1, "picture");
+    if (levels) {
+        const uvec2 whole = size_of_levels(size);
+        targets.levels = {device,
+                          {.format = kRasterColor,
+                           .width = whole.x,
+                           .height = whole.y,
+                           .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT,
+                           .name = "picture behind"}};
+    }
     if (!aovs) return targets;
     for (std::size_t i = 0; i < kRasterAovTargets; ++i)
         targets.aovs[i] = make_target(device, size, i + 1 == kRasterAovTargets ? kRasterIds : kRasterColor, 1, "AOVs");

@@ -12,6 +12,7 @@ struct RasterTargets {
     gpu::Image color;  ///< multisampled; empty where one sample is drawn
     gpu::Image resolved;
     gpu::Image depth;
+    gpu::Image levels;  ///< of what is behind transmitting surfaces (levels.glsl); empty unless something transmits
     std::array<gpu::Image, kRasterAovTargets> aovs;  ///< empty unless asked for
     gpu::Image aov_depth;
 
@@ -19,8 +20,11 @@ struct RasterTargets {
     bool is_multisampled() const { return static_cast<bool>(color); }
 };
 
-/// `samples`: 1 or 4.
-RasterTargets make_targets(gpu::Device& device, ivec2 size, std::uint32_t samples, bool aovs);
+/// `samples`: 1 or 4. `levels`: for transmitting surfaces.
+RasterTargets make_targets(gpu::Device& device, ivec2 size, std::uint32_t samples, bool aovs, bool levels);
+
+/// Texels of RasterTargets::levels for a picture of this size.
+uvec2 size_of_levels(ivec2 picture);
 
 /// The resolved picture and the AOVs, once they are drawn; values that are not finite are kept and counted.
 /// Film::samples and metadata are the caller's.

@@ -15,6 +15,7 @@ struct RasterTextures::Slot {
 
 namespace {
 
+constexpr std::uint32_t kFirstLayerBinding = 5;  // of layers.glsl
 constexpr VkFormat kTexelFormat = VK_FORMAT_R16G16B16A16_UNORM;
 
 VkSamplerAddressMode address_mode(Wrap wrap)
@@ -59,15 +60,34 @@ RasterTextures::RasterTextures(gpu::Device& device, const Scene& scene, bool mip
 std::vector<RasterTextures::Slot> RasterTextures::slots(const Material& material, const RasterVariant& variant)
 {
     using C = RasterConstant;
+    const bool glossy = material.model == BsdfModel::specular_glossiness;
     const auto slot = [&](C constant, const TextureUse& use, Coding coding) {
         const auto binding = static_cast<std::uint32_t>(constant) - static_cast<std::uint32_t>(C::base_color_texture);
         return Slot{binding, variant.get(constant) != 0 ? &use : nullptr, coding};
     };
-    return {slot(C::base_color_texture, material.base_color_texture, Coding::srgb),
-            slot(C::metallic_roughness_texture, material.metallic_roughness_texture, Coding::linear),
-            slot(C::normal_texture, material.normal_texture, Coding::linear),
-            slot(C::occlusion_texture, material.occlusion_texture, Coding::linear),
-            slot(C::emissive_texture, material.emissive_texture, Coding::srgb)};
+    std::vector<Slot> all{slot(C::base_color_texture, material.base_color_texture, Coding::srgb),
+                          slot(C::metallic_roughness_texture, material.metallic_roughness_texture,
+                               glossy ? Coding::srgb : Coding::linear),
+                          slot(C::normal_texture, material.normal_texture, Coding::linear),
+                          slot(C::occlusion_texture, material.occlusion_texture, Coding::linear),
+                          slot(C::emissive_texture, material.emissive_texture, Coding::srgb)};
+    for (std::uint32_t i = 0; i < kLayerTextures; ++i) {
+        const auto texture = static_cast<LayerTexture>(i);
+        const bool colored = texture == LayerTexture::specular_color || texture == LayerTexture::sheen_color ||
+                             texture == LayerTexture::diffuse_transmission_color;
+        all.push_back({kFirstLayerBinding + i,
+                       variant.reads(texture) ? &layer_texture(*material.layers, texture) : nullptr,
+                       colored ? Coding::srgb : Coding::linear});
+    }
+    return all;
+}
+
+RasterTextures::Key RasterTextures::key(const Material& material, const RasterVariant& variant)
+{
+    Key key;
+    for (const Slot& slot : slots(material, variant))
+        key.emplace_back(slot.use != nullptr ? slot.use->texture : kNone, slot.coding);
+    return key;
 }
 
 void RasterTextures::require(const Material& material, const RasterVariant& variant)

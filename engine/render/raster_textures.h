@@ -18,6 +18,9 @@ class RasterTextures {
 
     /// Uploads what `variant` reads of `material`, unless it is there.
     void require(const Material& material, const RasterVariant& variant);
+    /// What tells the sets of two materials apart: texture and coding, slot by slot.
+    using Key = std::vector<std::pair<Index, Coding>>;
+    static Key key(const Material& material, const RasterVariant& variant);
     /// Descriptor set 1 of surface.glsl for a material drawn by `variant`; what that does not read is one white texel.
     gpu::Bindings bind(const gpu::Layout& layout, const Material& material, const RasterVariant& variant) const;
 

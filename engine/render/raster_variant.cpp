@@ -32,6 +32,8 @@ Model describe(BsdfModel model)
             return {shared::kModelDielectric, Feature::dielectric};
         case BsdfModel::rough_dielectric:
             return {shared::kModelRoughDielectric, Feature::rough_dielectric};
+        case BsdfModel::specular_glossiness:
+            return {shared::kModelSpecularGlossiness, Feature::specular_glossiness};
     }
     assume(false);
     return {};
@@ -84,7 +86,11 @@ RasterVariant RasterVariants::of(const Draw& draw, RasterTarget target) const
     variant.set(RasterConstant::lit, triangles || normals);
     variant.set(RasterConstant::triangles, triangles);
     variant.set(RasterConstant::vertex_colors, !primitive.colors.empty() && required_.has(Feature::vertex_colors));
-    if (primitive.tangents.empty() || !required_.has(Feature::tangents)) variant.set(RasterConstant::normal_texture, 0);
+    if (primitive.tangents.empty() || !required_.has(Feature::tangents)) {
+        variant.set(RasterConstant::normal_texture, 0);
+        constexpr std::uint32_t kCoatNormal = 1u << static_cast<unsigned>(LayerTexture::clearcoat_normal);
+        variant.set(RasterConstant::layer_textures, variant.get(RasterConstant::layer_textures) & ~kCoatNormal);
+    }
     return variant;
 }
 
@@ -99,6 +105,7 @@ RasterVariant RasterVariants::of(const PosedSphere& sphere, RasterTarget target)
         .shape = RasterShape::sphere, .target = target, .topology = Topology::triangles, .constants = {}};
     set_frame(variant);
     set_material(variant, plain);
+    variant.set(RasterConstant::layer_textures, 0);
     variant.set(RasterConstant::normals, 1);
     variant.set(RasterConstant::lit, 1);
     variant.set(RasterConstant::triangles, 1);
@@ -107,14 +114,21 @@ RasterVariant RasterVariants::of(const PosedSphere& sphere, RasterTarget target)
     return variant;
 }
 
-RasterVariant RasterVariants::background() const
+RasterVariant RasterVariants::background(bool environment) const
 {
     RasterVariant variant{.shape = RasterShape::background,
                           .target = RasterTarget::color,
                           .topology = Topology::triangles,
                           .constants = {}};
     set_frame(variant);
+    if (!environment) variant.set(RasterConstant::environment, EnvironmentKind::none);
     return variant;
+}
+
+bool RasterVariants::has_layers(const Material& material) const
+{
+    return !blinn_phong_ &&
+           (material.model == BsdfModel::metallic_roughness || material.model == BsdfModel::specular_glossiness);
 }
 
 bool RasterVariants::culls_back(const Material& material) const
@@ -144,23 +158,100 @@ void RasterVariants::set_material(RasterVariant& variant, const Material& materi
     variant.set(RasterConstant::emission, emits);
     using C = RasterConstant;
     use_texture(variant, C::base_color_texture, Feature::base_color_texture, material.base_color_texture);
-    if (material.model == BsdfModel::metallic_roughness)
+    if (material.model == BsdfModel::metallic_roughness || material.model == BsdfModel::specular_glossiness)
         use_texture(variant, C::metallic_roughness_texture, Feature::metallic_roughness_texture,
                     material.metallic_roughness_texture);
     if (material.model != BsdfModel::unlit)
         use_texture(variant, C::normal_texture, Feature::normal_texture, material.normal_texture);
     if (occludes) use_texture(variant, C::occlusion_texture, Feature::occlusion_texture, material.occlusion_texture);
     if (emits) use_texture(variant, C::emissive_texture, Feature::emissive_texture, material.emissive_texture);
+    if (material.layers && has_layers(material)) set_layers(variant, *material.layers);
+}
+
+void RasterVariants::set_layers(RasterVariant& variant, const MaterialLayers& m) const
+{
+    using C = RasterConstant;
+    using T = LayerTexture;
+    const bool specular = m.ior != 1.5 || m.specular != 1 || m.specular_color != dvec3(1) ||
+                          m.specular_texture.present() || m.specular_color_texture.present();
+    if (specular) set_layer(variant, C::specular_layer, Feature::specular, m, {T::specular, T::specular_color});
+    if (m.clearcoat > 0)
+        set_layer(variant, C::clearcoat, Feature::clearcoat, m,
+                  {T::clearcoat, T::clearcoat_roughness, T::clearcoat_normal});
+    if (m.sheen_color != dvec3(0))
+        set_layer(variant, C::sheen, Feature::sheen, m, {T::sheen_color, T::sheen_roughness});
+    if (m.transmission > 0) set_layer(variant, C::transmission, Feature::transmission, m, {T::transmission});
+    if (m.volumetric()) set_layer(variant, C::volume, Feature::volume, m, {T::thickness});
+    if (m.volumetric() && m.dispersion > 0) set_layer(variant, C::dispersion, Feature::dispersion, m, {});
+    if (m.iridescence > 0)
+        set_layer(variant, C::iridescence, Feature::iridescence, m, {T::iridescence, T::iridescence_thickness});
+    if (m.anisotropy != 0) set_layer(variant, C::anisotropy, Feature::anisotropy, m, {T::anisotropy});
+    if (m.diffuse_transmission > 0)
+        set_layer(variant, C::diffuse_transmission, Feature::diffuse_transmission, m,
+                  {T::diffuse_transmission, T::diffuse_transmission_color});
+}
+
+void RasterVariants::set_layer(RasterVariant& variant, RasterConstant constant, Feature feature,
+                               const MaterialLayers& layers, std::initializer_list<LayerTexture> textures) const
+{
+    if (!required_.has(feature)) return;
+    variant.set(constant, 1);
+    for (const LayerTexture texture : textures) {
+        if (!uses(variant, Feature::layer_textures, layer_texture(layers, texture))) continue;
+        const std::uint32_t bit = 1u << static_cast<unsigned>(texture);
+        variant.set(RasterConstant::layer_textures, variant.get(RasterConstant::layer_textures) | bit);
+    }
+}
+
+bool RasterVariants::uses(RasterVariant& variant, Feature feature, const TextureUse& use) const
+{
+    if (!use.present() || !required_.has(feature) || !required_.texture_used[use.texture]) return false;
+    if (use.uv_set == 1 && required_.has(Feature::uv1)) variant.set(RasterConstant::uv1, 1);
+    if (use.transform != dmat3(1) && required_.has(Feature::texture_transform))
+        variant.set(RasterConstant::texture_transform, 1);
+    return true;
 }
 
 void RasterVariants::use_texture(RasterVariant& variant, RasterConstant constant, Feature feature,
                                  const TextureUse& use) const
 {
-    if (!use.present() || !required_.has(feature) || !required_.texture_used[use.texture]) return;
-    variant.set(constant, 1);
-    if (use.uv_set == 1 && required_.has(Feature::uv1)) variant.set(RasterConstant::uv1, 1);
-    if (use.transform != dmat3(1) && required_.has(Feature::texture_transform))
-        variant.set(RasterConstant::texture_transform, 1);
+    if (uses(variant, feature, use)) variant.set(constant, 1);
+}
+
+const TextureUse& layer_texture(const MaterialLayers& layers, LayerTexture texture)
+{
+    switch (texture) {
+        case LayerTexture::specular:
+            return layers.specular_texture;
+        case LayerTexture::specular_color:
+            return layers.specular_color_texture;
+        case LayerTexture::clearcoat:
+            return layers.clearcoat_texture;
+        case LayerTexture::clearcoat_roughness:
+            return layers.clearcoat_roughness_texture;
+        case LayerTexture::clearcoat_normal:
+            return layers.clearcoat_normal_texture;
+        case LayerTexture::sheen_color:
+            return layers.sheen_color_texture;
+        case LayerTexture::sheen_roughness:
+            return layers.sheen_roughness_texture;
+        case LayerTexture::transmission:
+            return layers.transmission_texture;
+        case LayerTexture::thickness:
+            return layers.thickness_texture;
+        case LayerTexture::iridescence:
+            return layers.iridescence_texture;
+        case LayerTexture::iridescence_thickness:
+            return layers.iridescence_thickness_texture;
+        case LayerTexture::anisotropy:
+            return layers.anisotropy_texture;
+        case LayerTexture::diffuse_transmission:
+            return layers.diffuse_transmission_texture;
+        case LayerTexture::diffuse_transmission_color:
+        case LayerTexture::count:
+            break;
+    }
+    return layers.diffuse_transmission_color_texture;
 }
 
 }  // namespace etalon

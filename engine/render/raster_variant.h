@@ -34,8 +34,39 @@ enum class RasterConstant : unsigned {
     triangles,
     cull_back,
     emitters,
+    specular_layer,
+    clearcoat,
+    sheen,
+    transmission,
+    volume,
+    iridescence,
+    anisotropy,
+    diffuse_transmission,
+    dispersion,
+    layer_textures,  ///< bit i: LayerTexture i is read
     count
 };
+
+/// The textures of MaterialLayers, in the order of LayerRecord and of shaders/raster/layers.glsl.
+enum class LayerTexture : unsigned {
+    specular,
+    specular_color,
+    clearcoat,
+    clearcoat_roughness,
+    clearcoat_normal,
+    sheen_color,
+    sheen_roughness,
+    transmission,
+    thickness,
+    iridescence,
+    iridescence_thickness,
+    anisotropy,
+    diffuse_transmission,
+    diffuse_transmission_color,
+    count
+};
+inline constexpr std::size_t kLayerTextures = static_cast<std::size_t>(LayerTexture::count);
+const TextureUse& layer_texture(const MaterialLayers& layers, LayerTexture texture);
 
 enum class RasterShape { mesh, sphere, background };
 enum class RasterTarget { color, aovs };
@@ -48,6 +79,10 @@ struct RasterVariant {
     std::array<std::uint32_t, static_cast<std::size_t>(RasterConstant::count)> constants{};
 
     std::uint32_t get(RasterConstant constant) const { return constants[static_cast<std::size_t>(constant)]; }
+    bool reads(LayerTexture texture) const
+    {
+        return (get(RasterConstant::layer_textures) >> static_cast<unsigned>(texture) & 1) != 0;
+    }
     void set(RasterConstant constant, std::uint32_t value) { constants[static_cast<std::size_t>(constant)] = value; }
     auto operator<=>(const RasterVariant&) const = default;
 };
@@ -60,16 +95,23 @@ class RasterVariants {
 
     RasterVariant of(const Draw& draw, RasterTarget target) const;
     RasterVariant of(const PosedSphere& sphere, RasterTarget target) const;
-    RasterVariant background() const;
+    /// The environment behind everything, or (false) RasterFrame::background.
+    RasterVariant background(bool environment) const;
 
     /// Samples a pixel: 1 or 4.
     std::uint32_t samples() const { return samples_; }
     /// True where faces are culled by their side: every single-sided material but the dielectrics (SH-32).
     bool culls_back(const Material& material) const;
+    /// glTF's own models under their own shading: energy of rough reflection (SH-53), layers.
+    bool has_layers(const Material& material) const;
 
  private:
     void set_frame(RasterVariant& variant) const;
     void set_material(RasterVariant& variant, const Material& material) const;
+    void set_layers(RasterVariant& variant, const MaterialLayers& layers) const;
+    void set_layer(RasterVariant& variant, RasterConstant constant, Feature feature, const MaterialLayers& layers,
+                   std::initializer_list<LayerTexture> textures) const;
+    bool uses(RasterVariant& variant, Feature feature, const TextureUse& use) const;
     void use_texture(RasterVariant& variant, RasterConstant constant, Feature feature, const TextureUse& use) const;
 
     const PosedScene& posed_;

@@ -11,6 +11,10 @@ layout(location = 0) out vec4 color;
 
 void main()
 {
+    if (kEnvironment == kEnvironmentNone) {
+        color = frame.background;
+        return;
+    }
     vec3 origin, direction;
     film_ray(gl_FragCoord.xy, origin, direction);
     vec3 light = frame.environment_radiance;

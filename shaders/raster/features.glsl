@@ -26,6 +26,17 @@ layout(constant_id = 19) const bool kTriangles = true;      // else points or li
 layout(constant_id = 20) const bool kCullBack = true;       // spheres; meshes are culled by the pipeline
 layout(constant_id = 21) const bool kEmitters = false;       // emissive surfaces that light others (SH-39)
 
+layout(constant_id = 22) const bool kSpecularLayer = false;  // ior, KHR_materials_specular (SH-50)
+layout(constant_id = 23) const bool kClearcoat = false;
+layout(constant_id = 24) const bool kSheen = false;
+layout(constant_id = 25) const bool kTransmission = false;
+layout(constant_id = 26) const bool kVolume = false;         // the transmitting surface bounds a body
+layout(constant_id = 27) const bool kIridescence = false;
+layout(constant_id = 28) const bool kAnisotropy = false;
+layout(constant_id = 29) const bool kDiffuseTransmission = false;
+layout(constant_id = 30) const bool kDispersion = false;
+layout(constant_id = 31) const uint kLayerTextures = 0u;     // bit i: texture i of LayerRecord, in its order, is read
+
 const uint kEnvironmentNone = 0u;
 const uint kEnvironmentConstant = 1u;
 const uint kEnvironmentMap = 2u;

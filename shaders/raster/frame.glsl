@@ -1,6 +1,7 @@
 // What every draw of a frame reads.
 #ifndef ETALON_SHADERS_RASTER_FRAME_GLSL
 #define ETALON_SHADERS_RASTER_FRAME_GLSL
+#include "shaders/lib/numeric.glsl"
 #include "shaders/raster/features.glsl"
 #include "shaders/shared/material.h"
 #include "shaders/shared/raster.h"
@@ -11,8 +12,11 @@ layout(set = 0, binding = 2, scalar) readonly buffer LightBlock { LightRecord li
 layout(set = 0, binding = 3, scalar) readonly buffer FaceBlock { vec3 face_normals[]; };  // object space, unit
 layout(set = 0, binding = 4, scalar) readonly buffer EmitterBlock { EmitterRecord emitters[]; };
 layout(set = 0, binding = 5) uniform texture2D environment_atlas;
+layout(set = 0, binding = 6, scalar) readonly buffer LayerBlock { LayerRecord layer_records[]; };
+layout(set = 0, binding = 7, scalar) readonly buffer AlbedoBlock { vec4 albedo_cells[]; };  // shaders/shared/albedo.h
+layout(set = 0, binding = 8) uniform texture2D picture_behind;  // levels of seen.glsl; black but for transmission
 
-const float kPi = 3.14159265358979323846;
+vec4 albedo_cell(int index) { return albedo_cells[index]; }
 
 /// Towards the viewer from a surface point.
 vec3 towards_viewer(vec3 position)

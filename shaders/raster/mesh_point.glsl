@@ -1,7 +1,7 @@
 // A point of a mesh, as mesh.vert hands it on.
 #ifndef ETALON_SHADERS_RASTER_MESH_POINT_GLSL
 #define ETALON_SHADERS_RASTER_MESH_POINT_GLSL
-#include "shaders/raster/surface.glsl"
+#include "shaders/raster/point.glsl"
 
 layout(push_constant, scalar) uniform DrawBlock { RasterDraw draw; };
 
@@ -27,6 +27,7 @@ Point mesh_point()
     p.uv[0] = with_derivatives(in_uv.xy, q);
     p.uv[1] = with_derivatives(in_uv.zw, q);
     p.color = in_color;
+    p.scale = draw.scale;
     return p;
 }
 

@@ -1,7 +1,7 @@
 // A point of an exact sphere, found by the pixel's own ray.
 #ifndef ETALON_SHADERS_RASTER_SPHERE_POINT_GLSL
 #define ETALON_SHADERS_RASTER_SPHERE_POINT_GLSL
-#include "shaders/raster/surface.glsl"
+#include "shaders/raster/point.glsl"
 
 layout(push_constant, scalar) uniform SphereBlock { RasterSphere sphere; };
 
@@ -75,6 +75,7 @@ Point sphere_point(vec2 center, out float t)
     p.uv[0] = Uv(vec2(0.0), vec2(0.0), vec2(0.0));
     p.uv[1] = p.uv[0];
     p.color = vec4(1.0);
+    p.scale = sphere.scale;
     return p;
 }
 

@@ -1,7 +1,7 @@
 // From a rasterized point to a surface: textures, vertex colours, normal mapping, model (docs/shading.md §1, §4).
 #ifndef ETALON_SHADERS_RASTER_SURFACE_GLSL
 #define ETALON_SHADERS_RASTER_SURFACE_GLSL
-#include "shaders/raster/frame.glsl"
+#include "shaders/raster/layers.glsl"
 #include "shaders/raster/reflect.glsl"
 
 layout(set = 1, binding = 0) uniform sampler2D base_color_map;
@@ -10,26 +10,9 @@ layout(set = 1, binding = 2) uniform sampler2D normal_map;
 layout(set = 1, binding = 3) uniform sampler2D occlusion_map;
 layout(set = 1, binding = 4) uniform sampler2D emissive_map;
 
-/// A texture coordinate with its screen derivatives.
-struct Uv {
-    vec2 at;
-    vec2 dx;
-    vec2 dy;
-};
-
-/// What rasterization gives for a pixel, extrapolated to its centre (SH-30).
-struct Point {
-    vec3 position;  // camera-relative world
-    vec3 ng;        // unit, on the glTF front's side
-    vec3 n;         // unit, on the same side
-    vec4 tangent;   // world, not unit; w the bitangent's sign
-    Uv uv[2];
-    vec4 color;
-    bool front;
-};
-
 struct Surface {
     Reflectance reflectance;
+    Layers layers;
     vec3 base;  // base colour
     float alpha;
     vec3 emission;
@@ -38,44 +21,51 @@ struct Surface {
     vec3 ng;
 };
 
-/// (TX-1) from the interpolated coordinate times q = 1/w and q itself: both are linear on the screen, so their
-/// differences are exact derivatives, the same on every pixel of a quad.
-Uv with_derivatives(vec2 uv, float q)
-{
-    const vec2 linear = uv * q;
-    return Uv(uv, (dFdx(linear) - uv * dFdx(q)) / q, (dFdy(linear) - uv * dFdy(q)) / q);
-}
-
-/// Filtered as its sampler says, at level (TX-2).
-vec4 read(sampler2D map, TextureSlot slot, Point point)
-{
-    Uv uv = point.uv[0];
-    if (kUv1 && slot.uv_set == 1u) uv = point.uv[1];
-    if (kTextureTransform) {
-        const mat2 m = mat2(slot.u_row.x, slot.v_row.x, slot.u_row.y, slot.v_row.y);
-        uv = Uv(m * uv.at + vec2(slot.u_row.z, slot.v_row.z), m * uv.dx, m * uv.dy);
-    }
-    const vec2 size = vec2(textureSize(map, 0));
-    const vec2 dx = uv.dx * size;
-    const vec2 dy = uv.dy * size;
-    // 1e-30: a constant coordinate reads level 0 (T1).
-    return textureLod(map, uv.at, 0.5 * log2(max(max(dot(dx, dx), dot(dy, dy)), 1e-30)));
-}
-
-/// (SH-2)
+/// (SH-2) of the front.
 vec3 shading_normal(MaterialRecord material, Point point)
 {
     if (!kNormalTexture) return point.n;
-    vec3 texel = 2.0 * read(normal_map, material.normal_texture, point).xyz - 1.0;
-    texel.xy *= material.normal_scale;
-    const vec3 t = normalize(point.tangent.xyz);
-    const vec3 b = cross(point.n, t) * point.tangent.w;
-    return normalize(t * texel.x + b * texel.y + point.n * texel.z);
+    return mapped_normal(read(normal_map, material.normal_texture, point).xyz, material.normal_scale, point);
 }
 
-/// (SH-14), (SH-37)
-Reflectance resolve_model(MaterialRecord material, Point point, vec3 base)
+Reflectance reflectance_of(vec3 diffuse, vec3 f0, float roughness)
 {
+    return Reflectance(diffuse, f0, roughness, 0.0, vec3(0.0), 0.0);
+}
+
+/// (SH-50) specular_glossiness: `layers` receives what it calls specular.
+Reflectance resolve_glossiness(MaterialRecord material, Point point, vec3 base, inout Layers layers)
+{
+    vec3 specular = material.k;
+    float glossiness = 1.0 - material.roughness;
+    if (kMetallicRoughnessTexture) {
+        const vec4 texel = read(metallic_roughness_map, material.metallic_roughness_texture, point);
+        specular *= texel.rgb;
+        glossiness *= texel.a;
+    }
+    layers.f0 = specular;
+    layers.f90 = 1.0;
+    const vec3 diffuse = base * (1.0 - max_component(specular));
+    return Reflectance(diffuse, specular, 1.0 - glossiness, 0.0, diffuse, 0.0);
+}
+
+/// (SH-14), (SH-37), (SH-50)
+Reflectance resolve_model(MaterialRecord material, Point point, vec3 base, inout Layers layers)
+{
+    if (kModel == kModelSpecularGlossiness) return resolve_glossiness(material, point, base, layers);
+    if (kModel == kModelLambert) return reflectance_of(base, vec3(0.0), 1.0);
+    if (kModel == kModelMirror) return reflectance_of(vec3(0.0), base, 0.0);
+    if (kModel == kModelRoughConductor) {
+        const vec3 k2 = material.k * material.k;
+        const vec3 less = material.eta - 1.0;
+        const vec3 more = material.eta + 1.0;
+        return reflectance_of(vec3(0.0), (less * less + k2) / (more * more + k2), sqrt(material.ggx_alpha));
+    }
+    if (kModel == kModelDielectric || kModel == kModelRoughDielectric) {
+        const float ratio = (material.eta.x - 1.0) / (material.eta.x + 1.0);
+        const float rough = kModel == kModelDielectric ? 0.0 : sqrt(material.ggx_alpha);
+        return reflectance_of(vec3(0.0), vec3(ratio * ratio), rough);
+    }
     float metallic = material.metallic;
     float roughness = material.roughness;
     if (kMetallicRoughnessTexture) {
@@ -83,22 +73,7 @@ Reflectance resolve_model(MaterialRecord material, Point point, vec3 base)
         roughness *= texel.g;
         metallic *= texel.b;
     }
-    Reflectance r = Reflectance(base * (1.0 - metallic), mix(vec3(0.04), base, metallic), roughness, 0.0);
-    if (kModel == kModelLambert) r = Reflectance(base, vec3(0.0), 1.0, 0.0);
-    if (kModel == kModelMirror) r = Reflectance(vec3(0.0), base, 0.0, 0.0);
-    if (kModel == kModelRoughConductor) {
-        const vec3 k2 = material.k * material.k;
-        const vec3 less = material.eta - 1.0;
-        const vec3 more = material.eta + 1.0;
-        r = Reflectance(vec3(0.0), (less * less + k2) / (more * more + k2), sqrt(material.ggx_alpha), 0.0);
-    }
-    if (kModel == kModelDielectric || kModel == kModelRoughDielectric) {
-        const float ratio = (material.eta.x - 1.0) / (material.eta.x + 1.0);
-        const float rough = kModel == kModelDielectric ? 0.0 : sqrt(material.ggx_alpha);
-        r = Reflectance(vec3(0.0), vec3(ratio * ratio), rough, 0.0);
-    }
-    r.alpha = max(r.roughness * r.roughness, 1e-3);
-    return r;
+    return Reflectance(base * (1.0 - metallic), mix(layers.f0, base, metallic), roughness, 0.0, base, metallic);
 }
 
 /// (SH-21): factor times texture; a back of `emits_front_only` gives none.
@@ -120,12 +95,15 @@ Surface resolve_surface(MaterialRecord material, Point point)
     s.base = base.rgb;
     s.alpha = base.a;
     s.emission = emitted(material, point);
-    s.reflectance = resolve_model(material, point, base.rgb);
     s.occlusion = 1.0;
     if (kOcclusionTexture)
         s.occlusion = 1.0 + material.occlusion_strength * (read(occlusion_map, material.occlusion_texture, point).r - 1.0);
+    const vec3 n = shading_normal(material, point);
+    s.layers = kLayered ? resolve_layers(layer_records[material.layers], point, n) : no_layers();
+    s.reflectance = resolve_model(material, point, base.rgb, s.layers);
+    s.reflectance.alpha = max(s.reflectance.roughness * s.reflectance.roughness, 1e-3);
     const float side = point.front ? 1.0 : -1.0;
-    s.n = side * shading_normal(material, point);
+    s.n = side * n;
     s.ng = side * point.ng;
     return s;
 }

@@ -18,6 +18,7 @@ struct RasterFrame {
     uvec2 mirror_size;  // of table 0 in the environment's atlas, texels
     uint light_count;
     uint emitter_count;
+    vec4 background;  // behind everything, where the environment is not drawn there
 };
 
 // Bits of EmitterRecord::flags.
@@ -39,6 +40,7 @@ struct RasterDraw {
     vec4 object_rows[3];  // rows of camera-relative world from object
     mat3 normal_matrix;   // sign(det M) cofactor(M) (SH-2)
     float handedness;     // sign(det M): a mirror turns bitangents over
+    float scale;          // |det M|^(1/3): metres in the world per metre of thickness (SH-65)
     uint material;        // index of its MaterialRecord
     uint object_id;       // AOV
     uint first_face;      // of this primitive among the face normals
@@ -50,13 +52,20 @@ struct RasterSphere {
     float radius;
     uint material;
     uint object_id;
+    float scale;  // as RasterDraw's
+};
+
+/// One level of the picture behind transmitting surfaces: push constants of shrink.comp.
+struct RasterShrink {
+    uvec2 size;  // of the picture, pixels
+    uint level;
 };
 
 ETALON_SHARED_END
 #ifdef __cplusplus
-static_assert(sizeof(etalon::shared::RasterFrame) == 64 + 36 + 108 + 12 + 8 + 4 + 8 + 8 + 8 + 8 + 8);
+static_assert(sizeof(etalon::shared::RasterFrame) == 64 + 36 + 108 + 12 + 8 + 4 + 8 + 8 + 8 + 8 + 8 + 16);
 static_assert(sizeof(etalon::shared::EmitterRecord) == 48);
-static_assert(sizeof(etalon::shared::RasterDraw) == 48 + 36 + 16);
-static_assert(sizeof(etalon::shared::RasterSphere) == 24);
+static_assert(sizeof(etalon::shared::RasterDraw) == 48 + 36 + 20);
+static_assert(sizeof(etalon::shared::RasterSphere) == 28);
 #endif
 #endif

@@ -1,0 +1,58 @@
+// A rasterized point and how textures are read there: docs/shading.md §1, §4.
+#ifndef ETALON_SHADERS_RASTER_POINT_GLSL
+#define ETALON_SHADERS_RASTER_POINT_GLSL
+#include "shaders/raster/frame.glsl"
+
+/// A texture coordinate with its screen derivatives.
+struct Uv {
+    vec2 at;
+    vec2 dx;
+    vec2 dy;
+};
+
+/// What rasterization gives for a pixel, extrapolated to its centre (SH-30).
+struct Point {
+    vec3 position;  // camera-relative world
+    vec3 ng;        // unit, on the glTF front's side
+    vec3 n;         // unit, on the same side
+    vec4 tangent;   // world, not unit; w the bitangent's sign; 0: none
+    Uv uv[2];
+    vec4 color;
+    float scale;    // metres in the world per metre in the mesh: thickness of bodies (SH-65)
+    bool front;
+};
+
+/// (TX-1) from the interpolated coordinate times q = 1/w and q itself: both are linear on the screen, so their
+/// differences are exact derivatives, the same on every pixel of a quad.
+Uv with_derivatives(vec2 uv, float q)
+{
+    const vec2 linear = uv * q;
+    return Uv(uv, (dFdx(linear) - uv * dFdx(q)) / q, (dFdy(linear) - uv * dFdy(q)) / q);
+}
+
+/// Filtered as its sampler says, at level (TX-2).
+vec4 read(sampler2D map, TextureSlot slot, Point point)
+{
+    Uv uv = point.uv[0];
+    if (kUv1 && slot.uv_set == 1u) uv = point.uv[1];
+    if (kTextureTransform) {
+        const mat2 m = mat2(slot.u_row.x, slot.v_row.x, slot.u_row.y, slot.v_row.y);
+        uv = Uv(m * uv.at + vec2(slot.u_row.z, slot.v_row.z), m * uv.dx, m * uv.dy);
+    }
+    const vec2 size = vec2(textureSize(map, 0));
+    const vec2 dx = uv.dx * size;
+    const vec2 dy = uv.dy * size;
+    // 1e-30: a constant coordinate reads level 0 (T1).
+    return textureLod(map, uv.at, 0.5 * log2(max(max(dot(dx, dx), dot(dy, dy)), 1e-30)));
+}
+
+/// (SH-2) The normal that a texel of a normal map means.
+vec3 mapped_normal(vec3 texel, float scale, Point point)
+{
+    const vec3 xyz = (2.0 * texel - 1.0) * vec3(scale, scale, 1.0);
+    const vec3 t = normalize(point.tangent.xyz);
+    const vec3 b = cross(point.n, t) * point.tangent.w;
+    return normalize(t * xyz.x + b * xyz.y + point.n * xyz.z);
+}
+
+#endif
