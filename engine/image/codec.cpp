@@ -14,18 +14,10 @@
 #include <string_view>
 
 #include "engine/base/error.h"
+#include "engine/image/claims.h"
 
 namespace etalon::codec {
 namespace {
-
-constexpr int kMaxSide = 32768;
-constexpr std::uint64_t kMaxPixels = std::uint64_t{1}
-                                     << 28;  // 16384²: the largest image a Vulkan device must not exceed here
-constexpr int kMaxChannels = 64;
-/// A file may not claim more than this many times its own size: deflate ends near 1030. Small pictures are let off,
-/// since a flat WebP of any size takes a few dozen bytes.
-constexpr std::uint64_t kMaxRatio = 10000;
-constexpr std::uint64_t kHarmlessBytes = std::uint64_t{64} << 20;
 
 const char* plugin(Format format)
 {
@@ -80,91 +72,17 @@ Format require_format(std::span<const std::byte> bytes, std::span<const Format> 
               "convert it to one of: " + list);
 }
 
-/// Every chunk to IEND lies inside the file. OpenImageIO leaves its reader by longjmp when it meets the end, past
-/// destructors, so it must not meet it.
-bool png_is_whole(std::span<const std::byte> bytes)
+/// What the library found in the header, which is what it will ask memory for.
+void check_spec(const OIIO::ImageSpec& spec, Format format, std::size_t file_bytes, const Limits& limits,
+                const std::string& name)
 {
-    for (std::size_t i = 8; i + 12 <= bytes.size();) {
-        std::size_t size = 0;
-        for (std::size_t k = 0; k < 4; ++k) size = size << 8 | std::to_integer<std::size_t>(bytes[i + k]);
-        if (size > bytes.size() - i - 12) return false;
-        if (std::memcmp(&bytes[i + 4], "IEND", 4) == 0) return true;
-        i += 12 + size;
-    }
-    return false;
-}
-
-/// libjpeg fills what is missing of a cut file with grey and succeeds. In the coded data 0xff is followed by 0 or a
-/// restart marker alone, so that the first end marker after the start of the scan is the end.
-bool jpeg_is_whole(std::span<const std::byte> bytes)
-{
-    const auto at = [&](std::size_t i) { return std::to_integer<unsigned>(bytes[i]); };
-    std::size_t i = 2;
-    while (i + 4 <= bytes.size() && at(i) == 0xff && at(i + 1) != 0xda)
-        i += at(i + 1) == 0xff ? 1 : 2 + ((at(i + 2) << 8) | at(i + 3));
-    for (; i + 2 <= bytes.size(); ++i)
-        if (at(i) == 0xff && at(i + 1) == 0xd9) return true;
-    return false;
-}
-
-/// The same WebP file with its alpha switched off. OpenImageIO 2.4 multiplies WebP's colour by alpha whatever it is
-/// asked, which cannot be undone in 8 bits; from this copy it decodes the colour as it is.
-std::vector<std::byte> webp_without_alpha(std::span<const std::byte> bytes)
-{
-    std::vector<std::byte> out(bytes.begin(), bytes.end());
-    const auto at = [&](std::size_t i) { return std::to_integer<std::size_t>(out[i]); };
-    for (std::size_t i = 12; i + 8 < out.size();) {
-        const std::string_view kind(reinterpret_cast<const char*>(&out[i]), 4);
-        const std::size_t size = at(i + 4) | at(i + 5) << 8 | at(i + 6) << 16 | at(i + 7) << 24;
-        if (kind == "VP8X") out[i + 8] &= ~std::byte{0x10};
-        if (kind == "VP8L" && i + 12 < out.size()) out[i + 12] &= ~std::byte{0x10};  // bit 28 after the signature byte
-        if (kind == "ALPH") out[i] = std::byte{'_'};                                 // an unknown chunk is skipped
-        i += 8 + size + size % 2;
-    }
-    return out;
-}
-
-/// Every attribute of an EXR's header lies inside the file: OpenEXR reserves gigabytes on an attribute's word alone.
-bool exr_header_fits(std::span<const std::byte> bytes)
-{
-    constexpr unsigned kMultiPart = 0x10;  // in the second byte of version and flags
-    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    std::size_t i = 8;
-    for (;;) {
-        const std::size_t begin = i;
-        while (i < text.size() && text[i] != '\0') {
-            for (int k = 0; k < 2; ++k) {  // its name and its type
-                i = text.find('\0', i);
-                if (i++ == std::string_view::npos) return false;
-            }
-            if (text.size() - i < 4) return false;
-            std::uint32_t size = 0;
-            for (std::size_t k = 4; k-- > 0;) size = size << 8 | std::to_integer<std::uint32_t>(bytes[i + k]);
-            i += 4;
-            if (size > text.size() - i) return false;
-            i += size;
-        }
-        if (i++ >= text.size()) return false;
-        const bool more = (std::to_integer<unsigned>(bytes[5]) & kMultiPart) != 0;
-        if (!more || i == begin + 1) return true;  // several headers end with an empty one
-    }
-}
-
-/// What the header claims, before memory is asked for on its word.
-void check_claims(const OIIO::ImageSpec& spec, Format format, std::size_t file_bytes, const std::string& name)
-{
-    if (spec.width < 1 || spec.height < 1 || spec.depth > 1)
+    if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1)
         throw bad(name, fmt::format("it claims {}x{} pixels", spec.width, spec.height));
-    if (spec.width > kMaxSide || spec.height > kMaxSide)
-        throw bad(name,
-                  fmt::format("it claims {}x{} pixels; the limit is {} a side", spec.width, spec.height, kMaxSide));
-    const std::uint64_t pixels = std::uint64_t(spec.width) * std::uint64_t(spec.height);
-    if (pixels > kMaxPixels) throw bad(name, fmt::format("it claims {} pixels; the limit is {}", pixels, kMaxPixels));
-    if (spec.nchannels < 1 || spec.nchannels > kMaxChannels)
-        throw bad(name, fmt::format("it claims {} channels; the limit is {}", spec.nchannels, kMaxChannels));
-    const std::uint64_t decoded = pixels * spec.pixel_bytes(true);
-    if (decoded > kHarmlessBytes && decoded / kMaxRatio > file_bytes)
-        throw bad(name, fmt::format("its {} bytes claim to hold {} bytes of pixels", file_bytes, decoded));
+    check_claims({.width = std::uint64_t(spec.width),
+                  .height = std::uint64_t(spec.height),
+                  .channels = std::uint64_t(spec.nchannels),
+                  .pixel_bytes = spec.pixel_bytes(true)},
+                 file_bytes, limits, name);
     if (format != Format::exr) return;
     if (spec.deep) throw bad(name, "it is a deep EXR", "flatten it first");
     if (spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width ||
@@ -200,7 +118,7 @@ void read_pixels(OIIO::ImageInput& input, Picture& picture, const std::string& n
     }
 }
 
-Picture decode_guarded(std::span<const std::byte> bytes, Format format, const std::string& name)
+Picture decode_guarded(std::span<const std::byte> bytes, Format format, const Limits& limits, const std::string& name)
 {
     OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
     const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(plugin(format));
@@ -214,7 +132,7 @@ Picture decode_guarded(std::span<const std::byte> bytes, Format format, const st
     OIIO::ImageSpec spec;
     // A name of ours, never the file's: OpenImageIO reads meaning into names. The content comes from `memory`.
     if (!input->open(fmt::format("memory.{}", plugin(format)), spec, config)) throw bad(name, input->geterror());
-    check_claims(spec, format, bytes.size(), name);
+    check_spec(spec, format, bytes.size(), limits, name);
 
     Picture picture;
     picture.format = format;
@@ -229,9 +147,9 @@ Picture decode_guarded(std::span<const std::byte> bytes, Format format, const st
 }
 
 /// Replaces the premultiplied colour of a WebP picture by the file's own.
-void restore_color(Picture& picture, std::span<const std::byte> bytes, const std::string& name)
+void restore_color(Picture& picture, std::span<const std::byte> bytes, const Limits& limits, const std::string& name)
 {
-    const Picture color = decode_guarded(webp_without_alpha(bytes), Format::webp, name);
+    const Picture color = decode_guarded(webp_without_alpha(bytes), Format::webp, limits, name);
     if (color.channels.size() != 3 || color.width != picture.width || color.height != picture.height)
         throw bad(name, "its alpha cannot be told from its colour");
     for (std::size_t i = 0; 4 * i < picture.codes8.size(); ++i)
@@ -259,20 +177,22 @@ std::vector<std::byte> encode(Format format, const OIIO::ImageSpec& spec, const 
 
 }  // namespace
 
-Picture decode(std::span<const std::byte> bytes, std::span<const Format> accepted, const std::string& name)
+Picture decode(std::span<const std::byte> bytes, std::span<const Format> accepted, const Limits& limits,
+               const std::string& name)
 {
     const Format format = require_format(bytes, accepted, name);
-    if ((format == Format::jpeg && !jpeg_is_whole(bytes)) || (format == Format::png && !png_is_whole(bytes)) ||
-        (format == Format::exr && !exr_header_fits(bytes)))
-        throw bad(name, "the file ends early");
+    if (!is_whole(bytes, format)) throw bad(name, "the file ends early");
+    if (const std::optional<Claims> claims = read_claims(bytes, format, name))
+        check_claims(*claims, bytes.size(), limits, name);
     try {
-        Picture picture = decode_guarded(bytes, format, name);
-        if (format == Format::webp && picture.channels.size() == 4) restore_color(picture, bytes, name);
+        const std::vector<std::byte> picture_alone = bare(bytes, format);
+        Picture picture = decode_guarded(picture_alone, format, limits, name);
+        if (format == Format::webp && picture.channels.size() == 4) restore_color(picture, picture_alone, limits, name);
         return picture;
     } catch (const Error&) {
         throw;
     } catch (const std::bad_alloc&) {
-        throw Error(Blame::machine, fmt::format("cannot decode {}: no memory for its pixels", name));
+        throw Error(Blame::machine, fmt::format("cannot decode {}: no memory for its pixels", name), "resize it");
     } catch (const std::exception& exception) {
         throw bad(name, exception.what());
     }

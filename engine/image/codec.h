@@ -8,6 +8,8 @@
 #include <variant>
 #include <vector>
 
+#include "engine/base/limits.h"
+
 namespace etalon::codec {
 
 enum class Format { png, jpeg, webp, hdr, exr };
@@ -25,8 +27,10 @@ struct Picture {
     std::map<std::string, std::string> text;                     ///< string attributes
 };
 
-/// Decodes `bytes`, which must be of one of `accepted` by their first bytes. Throws Error naming `name`.
-Picture decode(std::span<const std::byte> bytes, std::span<const Format> accepted, const std::string& name);
+/// Decodes `bytes`, which must be of one of `accepted` by their first bytes, and whose header must not claim more than
+/// `limits` allow. The one way to any decoder. Throws Error naming `name`.
+Picture decode(std::span<const std::byte> bytes, std::span<const Format> accepted, const Limits& limits,
+               const std::string& name);
 
 /// One channel to write: `step` values between pixels.
 struct Channel {

@@ -19,7 +19,6 @@ namespace {
 using codec::Format;
 using codec::Picture;
 
-constexpr std::size_t kMaxFileBytes = std::size_t{4} << 30;
 constexpr const char* kPrefix = "etalon:";
 
 /// Fills RGBA from 1 (grey), 2 (grey and alpha), 3 or 4 channels; `opaque` is the code of alpha 1.
@@ -146,10 +145,10 @@ std::uint8_t code_of(float value)
 
 }  // namespace
 
-Texels decode_texels(std::span<const std::byte> bytes, const std::string& name)
+Texels decode_texels(std::span<const std::byte> bytes, const std::string& name, const Limits& limits)
 {
     constexpr std::array kAccepted{Format::png, Format::jpeg, Format::webp};
-    const Picture picture = codec::decode(bytes, kAccepted, name);
+    const Picture picture = codec::decode(bytes, kAccepted, limits, name);
     const std::size_t channels = picture.channels.size();
     if (channels > 4) throw Error(Blame::input, fmt::format("cannot decode {}: {} channels", name, channels));
     Texels texels;
@@ -165,10 +164,10 @@ Texels decode_texels(std::span<const std::byte> bytes, const std::string& name)
     return texels;
 }
 
-Image read_image(const std::filesystem::path& path)
+Image read_image(const std::filesystem::path& path, const Limits& limits)
 {
     constexpr std::array kAccepted{Format::exr, Format::hdr, Format::png, Format::jpeg, Format::webp};
-    const Picture picture = codec::decode(read_file(path, kMaxFileBytes), kAccepted, path.string());
+    const Picture picture = codec::decode(read_file(path, limits.resource_bytes), kAccepted, limits, path.string());
     return picture.values.empty() ? linear_from_codes(picture, path.string())
                                   : linear_from_values(picture, path.string());
 }
@@ -228,10 +227,10 @@ void write_film(const Film& film, const std::filesystem::path& path)
     replace_file(path, codec::encode_exr(film.width, film.height, channels, text));
 }
 
-Film read_film(const std::filesystem::path& path)
+Film read_film(const std::filesystem::path& path, const Limits& limits)
 {
     constexpr std::array kAccepted{Format::exr};
-    const Picture picture = codec::decode(read_file(path, kMaxFileBytes), kAccepted, path.string());
+    const Picture picture = codec::decode(read_file(path, limits.resource_bytes), kAccepted, limits, path.string());
     Film film;
     film.width = picture.width;
     film.height = picture.height;

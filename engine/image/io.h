@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/limits.h"
 #include "engine/image/film.h"
 #include "engine/image/image.h"
 
@@ -13,14 +14,14 @@ namespace etalon {
 
 /// Decodes PNG, JPEG or WebP (8 or 16 bit a channel) from memory into RGBA texels; grey is spread, missing alpha is 1,
 /// and colour is not multiplied by alpha. The reader is chosen by magic bytes. `name` goes into errors. Before a pixel
-/// is read it refuses sides over 32768, over 2^28 pixels, and more than 64 MiB that are over 10^4 times the input's
-/// size. Throws Error(input), also for a file that ends early; Error(machine) when memory runs out.
-Texels decode_texels(std::span<const std::byte> bytes, const std::string& name);
+/// is read it refuses what its header claims over `limits` (image_side, image_pixels, image_channels, image_ratio).
+/// Throws Error(input), also for a file that ends early; Error(machine) when memory runs out.
+Texels decode_texels(std::span<const std::byte> bytes, const std::string& name, const Limits& limits = Limits());
 
 /// A linear picture from EXR or HDR (or PNG, JPEG and WebP, whose sRGB is decoded to linear): 4 channels where the file
 /// has alpha, else 3. Alpha is as the file has it: premultiplied in EXR, not in the others. NaN and Inf are kept. Same
-/// limits and errors as decode_texels. An EXR must be flat, its data window its display window.
-Image read_image(const std::filesystem::path& path);
+/// limits (and resource_bytes) and errors as decode_texels. An EXR must be flat, its data window its display window.
+Image read_image(const std::filesystem::path& path, const Limits& limits = Limits());
 
 /// Replaces texels that are not finite before anything filters them, value by value: NaN and -Inf by 0, +Inf by the
 /// largest finite value of the picture. How many texels had one (T14).
@@ -37,7 +38,7 @@ PictureFormat picture_format(const std::filesystem::path& path);
 /// included. Throws Error(input) where `path` is no .exr or cannot be written.
 void write_film(const Film& film, const std::filesystem::path& path);
 /// Any EXR with R, G and B is a film; what it lacks stays empty (alpha: 1).
-Film read_film(const std::filesystem::path& path);
+Film read_film(const std::filesystem::path& path, const Limits& limits = Limits());
 
 /// `display`: 3 or 4 channels of display-referred values in [0, 1], already transfer-coded (unassociated alpha).
 /// PNG, 8 bit, rounded by floor(255 x + 1/2) (below 0 and NaN: 0; above 1: 255), with `metadata` as text chunks. The
