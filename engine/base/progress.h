@@ -30,6 +30,8 @@ class Progress {
     }
     /// True once the job should finish what it is at and return what it has.
     bool stopped() const { return stop_ != nullptr && stop_->load(std::memory_order_relaxed); }
+    /// The same stop, and nothing said: for one of many jobs that a longer one is made of.
+    Progress silent() const { return Progress({}, stop_); }
 
  private:
     Sink sink_;

@@ -38,12 +38,7 @@ std::string summary(const Report& report)
 
 std::vector<std::filesystem::path> write_report(const Report& report, const std::filesystem::path& folder)
 {
-    std::error_code failed;
-    std::filesystem::create_directories(folder, failed);
-    if (failed)
-        throw Error(Blame::input, "cannot make the folder: " + failed.message(), "choose another with -o")
-            .at(folder.string());
-
+    make_folder(folder);
     std::vector<std::filesystem::path> written{folder / "report.html", folder / "report.json"};
     const auto save = [&](const std::string& stem, const Image& picture,
                           const std::map<std::string, std::string>& metadata) {

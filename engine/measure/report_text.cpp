@@ -10,33 +10,7 @@
 namespace etalon {
 namespace {
 
-using Row = std::vector<std::string>;
-
-/// Code points, which is columns for everything we print.
-std::size_t columns(const std::string& text)
-{
-    return static_cast<std::size_t>(
-        std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
-}
-
-/// Left-aligned columns two spaces apart; the last one is not padded.
-std::string aligned(const std::vector<Row>& rows)
-{
-    std::vector<std::size_t> widths;
-    for (const Row& row : rows) {
-        widths.resize(std::max(widths.size(), row.size()));
-        for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], columns(row[k]));
-    }
-    std::string out;
-    for (const Row& row : rows) {
-        for (std::size_t k = 0; k < row.size(); ++k) {
-            out += row[k];
-            if (k + 1 < row.size()) out.append(widths[k] - columns(row[k]) + 2, ' ');
-        }
-        out += '\n';
-    }
-    return out;
-}
+using Row = TableRow;
 
 std::string shortened(const std::string& text, std::size_t limit)
 {

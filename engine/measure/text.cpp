@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -79,6 +80,30 @@ std::string verdict_text(const Comparison& comparison)
                             percent(test->false_alarm), percent(test->detectable_tile), percent(test->detectable_whole),
                             100 * test->power);
     return text;
+}
+
+std::size_t columns(const std::string& text)
+{
+    return static_cast<std::size_t>(
+        std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
+}
+
+std::string aligned(const std::vector<TableRow>& rows)
+{
+    std::vector<std::size_t> widths;
+    for (const TableRow& row : rows) {
+        widths.resize(std::max(widths.size(), row.size()));
+        for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], columns(row[k]));
+    }
+    std::string out;
+    for (const TableRow& row : rows) {
+        for (std::size_t k = 0; k < row.size(); ++k) {
+            out += row[k];
+            if (k + 1 < row.size()) out.append(widths[k] - columns(row[k]) + 2, ' ');
+        }
+        out += '\n';
+    }
+    return out;
 }
 
 }  // namespace etalon

@@ -3,6 +3,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "engine/image/film.h"
 #include "engine/measure/compare.h"
@@ -22,5 +23,11 @@ std::string seconds_text(double seconds);
 std::string verdict_text(const Comparison& comparison);
 /// A percentage with three significant digits.
 std::string percent(double fraction);
+
+using TableRow = std::vector<std::string>;
+/// Code points, which is columns for everything that is printed here.
+std::size_t columns(const std::string& text);
+/// Left-aligned columns two spaces apart; the last one is not padded.
+std::string aligned(const std::vector<TableRow>& rows);
 
 }  // namespace etalon

@@ -1,12 +1,16 @@
 #pragma once
 #include <cstdint>
-#include <string>
+#include <string_view>
 
 #include "engine/math/types.h"
 
 namespace etalon {
 
 enum class Renderer { raster, path, reference_raster, reference };
+/// "path", as --renderer takes it, and "Vulkan path tracer", as people say it.
+std::string_view name(Renderer renderer);
+std::string_view label(Renderer renderer);
+
 enum class Shading { automatic, blinn_phong, pbr };  ///< automatic: pbr
 
 /// Where a camera ray meets nothing.

@@ -1,9 +1,10 @@
 #pragma once
 #include <cstdint>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "engine/base/nearest.h"
 
 namespace etalon::cli {
 
@@ -51,13 +52,11 @@ const Command* find_command(std::string_view name);
 /// Null when the command has no option of that long name.
 const Option* find_option(const Command& command, std::string_view name);
 
-/// The candidate closest to `word` by edits (swaps count one), if it is close enough to be what was meant.
-std::string_view nearest(std::string_view word, std::span<const std::string> candidates);
-
 inline constexpr std::uint64_t kViewSamples = 4096;  ///< per pixel, where `view` stops when --spp is not given
 
 int render(const Arguments& arguments);
 int compare(const Arguments& arguments);
+int tradeoff(const Arguments& arguments);
 int diff(const Arguments& arguments);
 int explain(const Arguments& arguments);
 int info(const Arguments& arguments);

@@ -126,36 +126,6 @@ void Renderers::check_validation() const
         "this is a fault of etalon or of the driver: please report it with the output of `etalon info`");
 }
 
-std::string_view name(Renderer renderer)
-{
-    switch (renderer) {
-        case Renderer::raster:
-            return "raster";
-        case Renderer::path:
-            return "path";
-        case Renderer::reference:
-            return "reference";
-        case Renderer::reference_raster:
-            return "reference-raster";
-    }
-    return {};
-}
-
-std::string_view label(Renderer renderer)
-{
-    switch (renderer) {
-        case Renderer::raster:
-            return "Vulkan rasterizer";
-        case Renderer::path:
-            return "Vulkan path tracer";
-        case Renderer::reference:
-            return "reference path tracer";
-        case Renderer::reference_raster:
-            return "reference rasterizer";
-    }
-    return {};
-}
-
 std::string describe_error(const Film& film, Renderer renderer)
 {
     const std::optional<ErrorEstimate> error = estimate_error(film);

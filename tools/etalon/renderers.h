@@ -45,10 +45,6 @@ class Renderers {
     std::optional<gpu::Device> device_;
 };
 
-/// "path", as --renderer takes it, and "Vulkan path tracer", as people say it.
-std::string_view name(Renderer renderer);
-std::string_view label(Renderer renderer);
-
 /// "1.23% (95% interval 1.10% to 1.36%)"; "not measured" of a rasterized film; of a path-traced one with a single
 /// sample a pixel, that this is the reason.
 std::string describe_error(const Film& film, Renderer renderer);
