@@ -296,6 +296,13 @@ Subject measure_bounds(PosedScene& posed)
     return subject;
 }
 
+Subject around(const std::pair<dvec3, dvec3>& box)
+{
+    const dvec3 half = (box.second - box.first) / 2.0;
+    const double radius = length(half);
+    return {.center = box.first + half, .radius = radius > 0 && std::isfinite(radius) ? radius : 1};
+}
+
 }  // namespace
 
 PosedScene pose(const Scene& scene, const PoseSettings& settings)
@@ -314,7 +321,8 @@ PosedScene pose(const Scene& scene, const PoseSettings& settings)
     const Walk walk(scene, motion, root, posed);
     Deformer deformer(scene, motion, posed);
     for (const Deformation& deformation : walk.deformations) deformer.deform(deformation);
-    const Subject subject = measure_bounds(posed);
+    Subject subject = measure_bounds(posed);
+    if (settings.framed) subject = around(*settings.framed);
     posed.view = choose_view(scene, walk.cameras, subject, size, settings, posed.notes);
     posed.environment = resolve_environment(root, settings, has_light(posed), posed.notes);
     return posed;

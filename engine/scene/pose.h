@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -80,6 +81,8 @@ struct PoseSettings {
     double environment_intensity = 1;        ///< multiplied
     std::optional<double> time;              ///< seconds into the animation, held at its ends; absent: the rest pose
     std::optional<std::string> animation;    ///< name or index; the first when absent. Alone: at time 0
+    std::optional<std::pair<dvec3, dvec3>> framed;  ///< world box that a framed or orbiting view shows; that of this
+                                                    ///< instant when absent
 };
 
 /// Poses nodes, skins and morph targets at the settings' time, flattens the node forest, picks or frames the camera,

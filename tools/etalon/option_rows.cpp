@@ -27,6 +27,37 @@ const Rows& view_rows()
     return rows;
 }
 
+const Rows& animation_rows()
+{
+    static const Rows rows = {
+        {.name = "time",
+         .argument = "T",
+         .help = "Pose the scene as its animation has it at T seconds; its rest pose when absent",
+         .heading = "Animation"},
+        {.name = "animation",
+         .argument = "NAME|INDEX",
+         .help = "Which of the file's animations, as `etalon info SCENE` lists them; the first when absent",
+         .heading = "Animation"},
+    };
+    return rows;
+}
+
+const Rows& frame_rows()
+{
+    static const Rows rows = {
+        {.name = "frames",
+         .argument = "A:B",
+         .help = "A picture of each frame from A to B; frame n shows the animation at n/fps seconds",
+         .heading = "Animation"},
+        {.name = "fps",
+         .argument = "N",
+         .help = "Frames a second of --frames",
+         .standard = "24",
+         .heading = "Animation"},
+    };
+    return rows;
+}
+
 const Rows& light_rows()
 {
     static const Rows rows = {
@@ -121,6 +152,10 @@ const Rows& device_rows()
 const Rows& load_rows()
 {
     static const Rows rows = {
+        {.name = "variant",
+         .argument = "NAME",
+         .help = "Which of the file's material variants, as `etalon info SCENE` lists them; none when absent",
+         .heading = "View"},
         {.name = "strict", .help = "Warnings about the scene or the picture become errors", .heading = "Behaviour"},
     };
     return rows;

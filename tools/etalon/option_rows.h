@@ -7,6 +7,8 @@ using Rows = std::vector<Option>;
 
 // The options that several commands share, by heading of the help.
 const Rows& view_rows();
+const Rows& animation_rows();
+const Rows& frame_rows();  ///< several pictures of an animation
 const Rows& light_rows();
 const Rows& shading_rows();
 const Rows& sampling_rows();  ///< the knob table and the seed

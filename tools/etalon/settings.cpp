@@ -102,6 +102,8 @@ PoseSettings pose_settings(const Arguments& arguments)
     if (settings.camera && settings.orbit)
         throw Error(Blame::input, "--camera and --orbit exclude each other", "give one of them");
     settings.size = parse_size(arguments);
+    settings.time = arguments.number("time", -1e9, 1e9);
+    settings.animation = arguments.text("animation");
     read_environment(arguments, settings);
     return settings;
 }
