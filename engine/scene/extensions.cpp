@@ -17,7 +17,6 @@ constexpr std::array<std::string_view, 21> kSupported = {
     "KHR_materials_transmission", "KHR_materials_volume", "KHR_materials_iridescence", "KHR_materials_anisotropy",
     "KHR_materials_dispersion", "KHR_materials_diffuse_transmission", "KHR_materials_pbrSpecularGlossiness",
     "KHR_node_visibility", "KHR_mesh_quantization", "EXT_mesh_gpu_instancing", "EXT_texture_webp",
-    // Listed, not chosen from: the default variant is what the file draws without the extension.
     "KHR_materials_variants",
     // Metadata alone.
     "KHR_xmp_json_ld"};

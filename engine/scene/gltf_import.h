@@ -16,7 +16,13 @@ struct Source {
     const Model& model;
     const CheckedGltf& file;
     std::filesystem::path folder;
+    Index variant = kNone;  ///< into Scene::variants: whose materials are shown
 };
+
+/// Fills variants. gltf_metadata.cpp
+void list_variants(const Model& model, Scene& scene);
+/// Fills metadata: KHR_xmp_json_ld's packet of the asset, each property in a line. gltf_metadata.cpp
+void list_metadata(const Model& model, Scene& scene);
 
 /// Fills materials, textures and images (those that a material uses, decoded). gltf_material.cpp
 void import_materials(const Source& source, Scene& scene);

@@ -51,8 +51,11 @@ class Meshes {
             const tinygltf::Mesh& in = source_.model.meshes[m];
             Mesh out;
             out.name = in.name;
-            for (std::size_t p = 0; p < in.primitives.size(); ++p)
-                convert(in.primitives[p], fmt::format("/meshes/{}/primitives/{}", m, p), out);
+            for (std::size_t p = 0; p < in.primitives.size(); ++p) {
+                tinygltf::Primitive primitive = in.primitives[p];
+                primitive.material = material_in_variant(primitive);
+                convert(primitive, fmt::format("/meshes/{}/primitives/{}", m, p), out);
+            }
             read_weights(in, fmt::format("/meshes/{}", m), out);
             scene_.meshes.push_back(std::move(out));
         }
@@ -235,6 +238,21 @@ class Meshes {
                         fmt::format("index {} is {}, but there are {} positions [ACCESSOR_INDEX_OOB]",
                                     bad - out.begin(), *bad, vertices));
         return out;
+    }
+
+    // KHR_materials_variants: the primitive's own material where the mapping does not name the variant.
+    int material_in_variant(const tinygltf::Primitive& in) const
+    {
+        const Value* extension = member(in.extensions, "KHR_materials_variants");
+        const Value* mappings = extension == nullptr ? nullptr : member(*extension, "mappings");
+        for (std::size_t m = 0; mappings != nullptr && m < mappings->ArrayLen(); ++m) {
+            const Value& mapping = mappings->Get(static_cast<int>(m));
+            const Value* variants = member(mapping, "variants");
+            for (std::size_t v = 0; variants != nullptr && v < variants->ArrayLen(); ++v)
+                if (variants->Get(static_cast<int>(v)).GetNumberAsInt() == static_cast<int>(source_.variant))
+                    return static_cast<int>(number(mapping, "material", "", in.material, 0, 1e9));
+        }
+        return in.material;
     }
 
     bool wants_tangents(int material) const

@@ -73,20 +73,54 @@ void add_geometry(const Scene& scene, Inventory& out)
         }
 }
 
+std::vector<std::string> names_of(const MaterialLayers& layers)
+{
+    std::vector<std::string> out;
+    const auto add = [&](bool present, const char* name) {
+        if (present) out.emplace_back(name);
+    };
+    add(layers.ior != 1.5, "ior");
+    add(layers.specular != 1 || layers.specular_color != dvec3(1) || layers.specular_texture.present() ||
+            layers.specular_color_texture.present(),
+        "specular");
+    add(layers.clearcoat > 0, "clearcoat");
+    add(layers.sheen_color != dvec3(0), "sheen");
+    add(layers.transmission > 0, "transmission");
+    add(layers.volumetric(), "volume");
+    add(layers.volumetric() && layers.dispersion > 0, "dispersion");
+    add(layers.iridescence > 0, "iridescence");
+    add(layers.anisotropy > 0, "anisotropy");
+    add(layers.diffuse_transmission > 0, "diffuse-transmission");
+    return out;
+}
+
+int textures_of(const Material& m)
+{
+    int count = 0;
+    for (const TextureUse* use : {&m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture,
+                                  &m.occlusion_texture, &m.emissive_texture})
+        count += use->present();
+    if (!m.layers) return count;
+    const MaterialLayers& l = *m.layers;
+    for (const TextureUse* use :
+         {&l.specular_texture, &l.specular_color_texture, &l.clearcoat_texture, &l.clearcoat_roughness_texture,
+          &l.clearcoat_normal_texture, &l.sheen_color_texture, &l.sheen_roughness_texture, &l.transmission_texture,
+          &l.thickness_texture, &l.iridescence_texture, &l.iridescence_thickness_texture, &l.anisotropy_texture,
+          &l.diffuse_transmission_texture, &l.diffuse_transmission_color_texture})
+        count += use->present();
+    return count;
+}
+
 void add_materials(const Scene& scene, Inventory& out)
 {
-    for (const Material& m : scene.materials) {
-        const std::array uses = {m.base_color_texture, m.metallic_roughness_texture, m.normal_texture,
-                                 m.occlusion_texture, m.emissive_texture};
-        const auto textures =
-            std::count_if(uses.begin(), uses.end(), [](const TextureUse& use) { return use.present(); });
+    for (const Material& m : scene.materials)
         out.materials.push_back({.name = m.name,
                                  .model = name_of(m.model),
                                  .alpha = name_of(m.alpha_mode),
-                                 .textures = static_cast<int>(textures),
+                                 .textures = textures_of(m),
                                  .emits = m.emission != dvec3(0),
-                                 .double_sided = m.double_sided});
-    }
+                                 .double_sided = m.double_sided,
+                                 .layers = m.layers ? names_of(*m.layers) : std::vector<std::string>{}});
     for (std::size_t i = 0; i < scene.images.size(); ++i) {
         const Texels& image = scene.images[i];
         const auto user =
@@ -126,6 +160,7 @@ Inventory describe(const Scene& scene)
         out.instances += node.instances.size();
     }
     out.variants = scene.variants;
+    out.metadata = scene.metadata;
     for (const Animation& a : scene.animations) {
         std::size_t keys = 0;
         for (const AnimationSampler& sampler : a.samplers) keys += sampler.times.size();

@@ -33,6 +33,7 @@ struct Inventory {
         int textures = 0;
         bool emits = false;
         bool double_sided = false;
+        std::vector<std::string> layers;  ///< "clearcoat", "volume", …: those of its extensions that show
     };
     struct ImageRow {
         std::string name;  ///< of the first texture that uses it
@@ -58,6 +59,7 @@ struct Inventory {
     };
 
     std::vector<std::string> variants;
+    std::vector<Metadata> metadata;  ///< of KHR_xmp_json_ld
     std::vector<AnimationRow> animations;
     std::vector<SkinRow> skins;
     std::size_t morph_targets = 0;  ///< of all primitives

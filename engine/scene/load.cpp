@@ -1,11 +1,14 @@
 #include "engine/scene/load.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "engine/base/error.h"
 #include "engine/base/files.h"
+#include "engine/base/nearest.h"
 #include "engine/scene/extensions.h"
 #include "engine/scene/gltf_import.h"
 
@@ -15,15 +18,17 @@ namespace {
 
 constexpr std::string_view kBuiltinPrefix = "builtin:";
 
-void list_variants(const gltf::Model& model, Scene& scene)
+// The index of the variant of this name.
+Index variant_of(const Scene& scene, const std::string& name)
 {
-    const gltf::Value* extension = gltf::member(model.extensions, "KHR_materials_variants");
-    const gltf::Value* variants = extension == nullptr ? nullptr : gltf::member(*extension, "variants");
-    for (std::size_t i = 0; variants != nullptr && i < variants->ArrayLen(); ++i) {
-        const gltf::Value* name = gltf::member(variants->Get(static_cast<int>(i)), "name");
-        scene.variants.push_back(name != nullptr && name->IsString() ? name->Get<std::string>()
-                                                                     : fmt::format("variant {}", i));
-    }
+    const auto found = std::find(scene.variants.begin(), scene.variants.end(), name);
+    if (found != scene.variants.end()) return static_cast<Index>(found - scene.variants.begin());
+    std::string mend = "the file has no material variants";
+    if (const std::string_view meant = nearest(name, scene.variants); !meant.empty())
+        mend = fmt::format("did you mean \"{}\"?", meant);
+    else if (!scene.variants.empty())
+        mend = fmt::format("choose one of: {}", fmt::join(scene.variants, ", "));
+    throw Error(Blame::input, fmt::format("no material variant \"{}\"", name), mend);
 }
 
 void refuse_warnings(const Scene& scene)
@@ -42,24 +47,30 @@ Scene parse_gltf(std::span<const std::byte> bytes, const std::filesystem::path& 
 {
     const CheckedGltf checked = preflight(bytes, folder, options.limits);
     const gltf::Model model = gltf::parse_model(checked.json);
-    const gltf::Source source{model, checked, folder};
     Scene scene;
     scene.name = name;
-    scene.warnings = warnings_for_extensions(model.extensionsUsed);
+    gltf::list_variants(model, scene);
+    gltf::list_metadata(model, scene);
+    const gltf::Source source{model, checked, folder, options.variant ? variant_of(scene, *options.variant) : kNone};
+    scene.warnings = checked.warnings;
+    for (std::string& warning : warnings_for_extensions(model.extensionsUsed))
+        scene.warnings.push_back(std::move(warning));
     gltf::import_materials(source, scene);
     gltf::import_meshes(source, scene);
     gltf::import_nodes(source, scene);
     gltf::import_skins(source, scene);
     gltf::import_animations(source, scene);
-    list_variants(model, scene);
     if (options.strict) refuse_warnings(scene);
     return scene;
 }
 
 Scene load_scene(const std::string& path_or_name, const LoadOptions& options)
 {
-    if (path_or_name.starts_with(kBuiltinPrefix))
-        return make_builtin(std::string_view(path_or_name).substr(kBuiltinPrefix.size()));
+    if (path_or_name.starts_with(kBuiltinPrefix)) {
+        Scene scene = make_builtin(std::string_view(path_or_name).substr(kBuiltinPrefix.size()));
+        if (options.variant) variant_of(scene, *options.variant);
+        return scene;
+    }
     const std::filesystem::path path = path_or_name;
     const std::vector<std::byte> bytes = read_file(path);
     try {

@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,6 +14,7 @@ namespace etalon {
 struct LoadOptions {
     bool strict = false;  ///< warnings become errors
     Limits limits{};
+    std::optional<std::string> variant;  ///< of KHR_materials_variants, by name; nothing: the file's own materials
 };
 
 /// Loads a .gltf or .glb file, or a built-in scene by name ("builtin:cornell"). External buffers and images are read

@@ -288,6 +288,12 @@ struct Animation {
     double duration = 0;                     ///< of the last key, seconds
 };
 
+/// A statement about the asset as a whole: "dc:creator", "Khronos".
+struct Metadata {
+    std::string name;
+    std::string value;
+};
+
 /// A glTF asset as a plain value; knows neither devices nor files nor time.
 struct Scene {
     std::string name;  ///< file name without folder, or "builtin:…"
@@ -303,7 +309,8 @@ struct Scene {
     Index default_root = 0;
     std::vector<Animation> animations;
     std::vector<std::string> warnings;  ///< what was ignored or mended, one line each, with its JSON pointer
-    std::vector<std::string> variants;  ///< names of KHR_materials_variants, listed only
+    std::vector<std::string> variants;  ///< names of KHR_materials_variants; LoadOptions::variant chooses
+    std::vector<Metadata> metadata;     ///< what KHR_xmp_json_ld says of the asset
 };
 
 }  // namespace etalon

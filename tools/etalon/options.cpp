@@ -1,29 +1,8 @@
 #include "tools/etalon/options.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace etalon::cli {
-namespace {
-
-/// Optimal string alignment: insertions, deletions, substitutions and swaps of neighbours, each at cost 1.
-std::size_t edit_distance(std::string_view a, std::string_view b)
-{
-    std::vector<std::vector<std::size_t>> cost(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-    std::iota(cost[0].begin(), cost[0].end(), std::size_t{0});
-    for (std::size_t i = 1; i <= a.size(); ++i) {
-        cost[i][0] = i;
-        for (std::size_t j = 1; j <= b.size(); ++j) {
-            const std::size_t changed = cost[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
-            cost[i][j] = std::min({cost[i - 1][j] + 1, cost[i][j - 1] + 1, changed});
-            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
-                cost[i][j] = std::min(cost[i][j], cost[i - 2][j - 2] + 1);
-        }
-    }
-    return cost[a.size()][b.size()];
-}
-
-}  // namespace
 
 const Command* find_command(std::string_view name)
 {
@@ -37,23 +16,6 @@ const Option* find_option(const Command& command, std::string_view name)
     const auto found =
         std::find_if(command.options.begin(), command.options.end(), [&](const Option& o) { return o.name == name; });
     return found == command.options.end() ? nullptr : &*found;
-}
-
-std::string_view nearest(std::string_view word, std::span<const std::string> candidates)
-{
-    constexpr std::size_t kLongest = 64;  // nothing that long was mistyped from a name of ours
-    if (word.size() > kLongest) return {};
-    std::string_view best;
-    std::size_t least = std::max<std::size_t>(2, word.size() / 3) + 1;
-    for (const std::string& candidate : candidates) {
-        const std::size_t distance =
-            candidate.starts_with(word) && word.size() > 2 ? 1 : edit_distance(word, candidate);
-        if (distance < least) {
-            least = distance;
-            best = candidate;
-        }
-    }
-    return best;
 }
 
 }  // namespace etalon::cli

@@ -1,6 +1,7 @@
 #include "tools/etalon/scene_info.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "engine/scene/inventory.h"
 #include "tools/etalon/json.h"
@@ -57,7 +58,8 @@ std::string as_text(const Inventory& scene)
     });
     text += section("materials", scene.materials, [](const Inventory::MaterialRow& row) {
         return fmt::format("{}, {}, {}, {} textures{}{}", called(row.name), row.model, row.alpha, row.textures,
-                           row.emits ? ", emits" : "", row.double_sided ? ", double sided" : "");
+                           row.emits ? ", emits" : "", row.double_sided ? ", double sided" : "") +
+               (row.layers.empty() ? "" : fmt::format(", {}", fmt::join(row.layers, " + ")));
     });
     text += section("images", scene.images, [](const Inventory::ImageRow& row) {
         return fmt::format("{}, {}x{}, {} bits", called(row.name), row.width, row.height, row.bits);
@@ -71,6 +73,7 @@ std::string as_text(const Inventory& scene)
                            row.keys);
     });
     text += section("variants", scene.variants, as_is);
+    text += section("metadata", scene.metadata, [](const Metadata& row) { return row.name + ": " + row.value; });
     return text;
 }
 
@@ -103,7 +106,8 @@ Json as_json(const Inventory& scene, const std::string& name)
                              {"alpha", row.alpha},
                              {"textures", row.textures},
                              {"emits", row.emits},
-                             {"double_sided", row.double_sided}});
+                             {"double_sided", row.double_sided},
+                             {"layers", row.layers}});
     });
     const Json images = list(scene.images, [](const Inventory::ImageRow& row) {
         return Json::object({{"name", row.name}, {"width", row.width}, {"height", row.height}, {"bits", row.bits}});
@@ -114,6 +118,9 @@ Json as_json(const Inventory& scene, const std::string& name)
     });
     const Json skins = list(scene.skins, [](const Inventory::SkinRow& row) {
         return Json::object({{"name", row.name}, {"joints", row.joints}});
+    });
+    const Json metadata = list(scene.metadata, [](const Metadata& row) {
+        return Json::object({{"name", row.name}, {"value", row.value}});
     });
     const Json counts = Json::object({{"nodes", scene.nodes},
                                       {"meshes", scene.meshes},
@@ -139,6 +146,7 @@ Json as_json(const Inventory& scene, const std::string& name)
                          {"skins", skins},
                          {"animations", animations},
                          {"variants", scene.variants},
+                         {"metadata", metadata},
                          {"warnings", scene.warnings}});
 }
 

@@ -32,7 +32,8 @@ std::vector<std::byte> read_stdin()
 
 Scene open_scene(const std::string& argument, const Arguments& arguments)
 {
-    const LoadOptions options{.strict = arguments.has("strict")};
+    LoadOptions options{.strict = arguments.has("strict")};
+    if (const auto variant = arguments.text("variant")) options.variant = *variant;
     Scene scene =
         argument == "-" ? parse_gltf(read_stdin(), {}, "standard input", options) : load_scene(argument, options);
     const Terminal terminal = Terminal::of_standard_error();
