@@ -29,6 +29,14 @@ Ray CameraRays::pinhole(const dvec2& film) const
     return in_world(dvec3(0), dvec3(at * slope_, -1));
 }
 
+std::optional<dvec2> CameraRays::film_of(const dvec3& p) const
+{
+    const dvec3 c = glm::transpose(dmat3(world_from_camera_)) * (p - eye_);
+    if (!orthographic_ && c.z >= 0) return std::nullopt;
+    const dvec2 at = orthographic_ ? dvec2(c) / extent_ : dvec2(c) / -c.z / slope_;
+    return 0.5 * (dvec2(at.x, -at.y) + 1.0) * size_;
+}
+
 Ray CameraRays::through_lens(const dvec2& film, const dvec2& lens) const
 {
     if (!has_lens()) return pinhole(film);

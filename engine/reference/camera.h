@@ -1,4 +1,6 @@
 #pragma once
+#include <optional>
+
 #include "engine/reference/intersect.h"
 #include "engine/scene/pose.h"
 
@@ -13,6 +15,9 @@ class CameraRays {
     Ray pinhole(const dvec2& film) const;
     /// Through point `lens` of the unit disk of a thin lens: rays of one film point meet on the plane of focus.
     Ray through_lens(const dvec2& film, const dvec2& lens) const;
+    /// The film position, pixels, at which a world point is seen by the middle of the lens; nothing where it is not in
+    /// front.
+    std::optional<dvec2> film_of(const dvec3& p) const;
     bool has_lens() const { return lens_.aperture_radius > 0; }
 
     /// Distance of `p` along the viewing axis, metres, > 0 in front.

@@ -44,6 +44,13 @@ RasterMaterial raster_material(const Material& material, const MaterialPoint& po
             m.f0 = dvec3(0.04) + point.metallic * (point.color - dvec3(0.04));
             m.roughness = point.roughness;
             break;
+        case BsdfModel::specular_glossiness: {
+            const BaseReflectance r = base_reflectance(material, point, {});
+            m.diffuse = r.color;
+            m.f0 = r.f0;
+            m.roughness = point.roughness;
+            break;
+        }
     }
     m.alpha = squared_alpha(m.roughness);
     return m;
@@ -146,10 +153,31 @@ Incident incident(const RasterEmitter& emitter, const dvec3& p)  // (SH-39)
     return out;
 }
 
+namespace {
+
+bool is_gltf_model(const Material& material)
+{
+    return material.model == BsdfModel::metallic_roughness || material.model == BsdfModel::specular_glossiness;
+}
+
+RasterShares shares_for(const Scene& scene, bool blinn_phong, unsigned threads)
+{
+    bool ggx = false, sheen = false;
+    for (const Material& material : scene.materials) {
+        if (blinn_phong || !is_gltf_model(material)) continue;
+        ggx = true;
+        sheen |= material.layers && material.layers->sheen_color != dvec3(0);
+    }
+    return {ggx, sheen, threads};
+}
+
+}  // namespace
+
 RasterShader::RasterShader(const World& world, const RenderSettings& settings)
     : world_(&world),
       camera_(world.posed->view),
       environment_(world.posed->environment, settings.threads),
+      shares_(shares_for(*world.posed->scene, settings.shading == Shading::blinn_phong, settings.threads)),
       emitters_(raster_emitters(world)),
       blinn_phong_(settings.shading == Shading::blinn_phong),
       background_(settings.background),
@@ -163,7 +191,17 @@ dvec3 RasterShader::towards_viewer(const dvec3& position) const
     return normalize(dvec3(view.world_from_camera[3]) - position);
 }
 
-std::optional<Shaded> RasterShader::shade(const Fragment& fragment) const
+bool RasterShader::has_layers(const Material& material) const
+{
+    return !blinn_phong_ && is_gltf_model(material);
+}
+
+bool RasterShader::transmits(const Material& material) const
+{
+    return has_layers(material) && material.layers && material.layers->transmission > 0;
+}
+
+std::optional<Shaded> RasterShader::shade(const Fragment& fragment, const PictureBehind* behind) const
 {
     const Material& material = *fragment.material;
     const MaterialPoint point = evaluate(material, world_->textures, fragment.attributes);
@@ -178,35 +216,72 @@ std::optional<Shaded> RasterShader::shade(const Fragment& fragment) const
         return out;
     }
 
-    const dvec3 wo = towards_viewer(fragment.position);
+    RasterSurface::Place place{.position = fragment.position,
+                               .wo = towards_viewer(fragment.position),
+                               .film = fragment.film,
+                               .scale = fragment.scale,
+                               .front = fragment.front};
     const dvec3 normal = fragment.attributes.normal;
-    const dvec3 without_face = normal == dvec3(0) ? wo : normalize(normal);  // points, lines, faces without area
-    const dvec3 ng_file = fragment.ng == dvec3(0) ? without_face : fragment.ng;
+    const dvec3 without_face = normal == dvec3(0) ? place.wo : normalize(normal);  // points, lines, faces without area
+    place.ng_file = fragment.ng == dvec3(0) ? without_face : fragment.ng;
+    place.n_front = shading_normal(material, world_->textures, fragment.attributes, place.ng_file);
     const double side = fragment.front ? 1 : -1;  // (SH-3)
-    const dvec3 n = side * shading_normal(material, world_->textures, fragment.attributes, ng_file);
-    const dvec3 ng = side * ng_file;
-    const double n_o = std::max(dot(n, wo), kSmallestCosine);
-    const RasterMaterial m = raster_material(material, point);
-    const auto add = [&](const Incident& in) {  // (SH-31)
-        if (!(dot(ng, in.wi) > 0)) return;
-        const dvec3 f = blinn_phong_ ? reflect_blinn_phong(m, n, wo, in.wi) : reflect_pbr(m, n, wo, in.wi, n_o);
-        if (f != dvec3(0)) out.radiance += f * in.irradiance;
+    place.n = side * place.n_front;
+    place.ng = side * place.ng_file;
+    if (has_layers(material)) {
+        const RasterSurroundings around = surroundings(behind);
+        const RasterSurface surface(material, point, fragment.attributes, world_->textures, place, around);
+        out.radiance = surface.emission_share() * out.radiance + surface.surroundings() +
+                       lights(fragment, [&](const dvec3& wi) { return surface.scatter(wi); });
+    } else {
+        out.radiance += shade_plain(fragment, point, place);
+    }
+    return out;
+}
+
+template <class Scatter>
+dvec3 RasterShader::lights(const Fragment& fragment, Scatter&& scatter) const  // (SH-31)
+{
+    dvec3 sum(0);
+    const auto add = [&](const Incident& in) {
+        const dvec3 f = scatter(in.wi);
+        if (f != dvec3(0)) sum += f * in.irradiance;
     };
     for (const PosedLight& light : world_->posed->lights) add(incident(light, fragment.position));
     for (const RasterEmitter& emitter : emitters_)
         if (emitter.object != fragment.object) add(incident(emitter, fragment.position));
-    if (blinn_phong_) {
-        out.radiance += point.occlusion * (m.diffuse + m.f0) * environment_.irradiance(n) / kPi;
-        return out;
-    }
-    if (m.diffuse != dvec3(0))
-        out.radiance += point.occlusion * m.diffuse / kPi * environment_.irradiance(n);  // (SH-33)
-    if (!m.has_specular) return out;
+    return sum;
+}
+
+RasterSurroundings RasterShader::surroundings(const PictureBehind* behind) const
+{
+    const View& view = world_->posed->view;
+    return {.environment = &environment_,
+            .shares = &shares_,
+            .camera = &camera_,
+            .size = {view.width, view.height},
+            .film_height = view.camera.orthographic ? 1 : std::tan(view.camera.yfov / 2),
+            .behind = behind};
+}
+
+// extras.etalon's models, and all lit ones under Blinn-Phong shading.
+dvec3 RasterShader::shade_plain(const Fragment& fragment, const MaterialPoint& point,
+                                const RasterSurface::Place& place) const
+{
+    const dvec3 &n = place.n, &wo = place.wo;
+    const double n_o = std::max(dot(n, wo), kSmallestCosine);
+    const RasterMaterial m = raster_material(*fragment.material, point);
+    dvec3 sum = lights(fragment, [&](const dvec3& wi) {
+        if (!(dot(place.ng, wi) > 0)) return dvec3(0);
+        return blinn_phong_ ? reflect_blinn_phong(m, n, wo, wi) : reflect_pbr(m, n, wo, wi, n_o);
+    });
+    if (blinn_phong_) return sum + point.occlusion * (m.diffuse + m.f0) * environment_.irradiance(n) / kPi;
+    if (m.diffuse != dvec3(0)) sum += point.occlusion * m.diffuse / kPi * environment_.irradiance(n);  // (SH-33)
+    if (!m.has_specular) return sum;
     const dvec3 r = 2 * dot(wo, n) * n - wo;
     const dvec2 ab = specular_scale_bias(m.roughness, n_o);
     const dvec3 specular = m.is_mirror ? m.f0 : m.f0 * ab.x + ab.y;
-    out.radiance += point.occlusion * environment_.prefiltered(r, m.roughness) * specular;  // (SH-34)
-    return out;
+    return sum + point.occlusion * environment_.prefiltered(r, m.roughness) * specular;  // (SH-34)
 }
 
 Shaded RasterShader::background(const dvec2& film) const

@@ -6,6 +6,7 @@
 #include "engine/reference/camera.h"
 #include "engine/reference/environment.h"
 #include "engine/reference/light.h"
+#include "engine/reference/raster_layers.h"
 #include "engine/reference/surface.h"
 #include "engine/scene/settings.h"
 
@@ -18,6 +19,8 @@ struct Fragment {
     dvec3 position{0};         ///< world
     dvec3 ng{0};               ///< geometric normal as the file means it; 0 for points and lines
     std::uint32_t object = 0;  ///< draw, or draws.size() + sphere: it does not light itself (SH-39)
+    dvec2 film{0};             ///< the pixel's centre
+    double scale = 1;          ///< metres in the world per metre in the mesh (SH-65)
     bool front = true;
     bool is_lit = true;  ///< false: points and lines without normals show base colour and emission alone
 };
@@ -46,18 +49,27 @@ class RasterShader {
  public:
     RasterShader(const World& world, const RenderSettings& settings);
 
-    /// Nothing where MASK discards the fragment.
-    std::optional<Shaded> shade(const Fragment& fragment) const;
+    /// Nothing where MASK discards the fragment. `behind`: what transmitting surfaces show; null before it is known.
+    std::optional<Shaded> shade(const Fragment& fragment, const PictureBehind* behind) const;
+    /// Drawn after what it shows (SH-65).
+    bool transmits(const Material& material) const;
     /// Behind everything: the environment, the colour, or nothing (alpha 0).
     Shaded background(const dvec2& film) const;
     const CameraRays& camera() const { return camera_; }
 
  private:
     dvec3 towards_viewer(const dvec3& position) const;
+    bool has_layers(const Material& material) const;
+    RasterSurroundings surroundings(const PictureBehind* behind) const;
+    dvec3 shade_plain(const Fragment& fragment, const MaterialPoint& point, const RasterSurface::Place& place) const;
+    /// Σ lights f · irradiance, `scatter` being f n·wi.
+    template <class Scatter>
+    dvec3 lights(const Fragment& fragment, Scatter&& scatter) const;
 
     const World* world_;
     CameraRays camera_;
     EnvironmentTables environment_;
+    RasterShares shares_;
     std::vector<RasterEmitter> emitters_;
     bool blinn_phong_;
     Background background_;

@@ -39,18 +39,25 @@ double far_plane(const PosedScene& posed, const CameraRays& camera)
     return far;
 }
 
-/// What is drawn in which order: opaque and masked objects as they come, then the blended ones, farthest first. (SH-32)
+/// What is drawn in which order: opaque and masked objects as they come, then the transmitting ones, then the blended
+/// ones, farthest first. (SH-32), (SH-65)
 struct DrawList {
     std::vector<Piece> pieces;
-    std::size_t first_blended = 0;  ///< from here on pieces blend and write no depth
+    std::size_t first_transmitting = 0;  ///< from here on pieces may show what has been drawn before
+    std::size_t first_blended = 0;       ///< from here on pieces blend and write no depth
+    bool transmits = false;              ///< some piece does
 };
+
+const Material& material_of(const PosedScene& posed, std::uint32_t object)
+{
+    const std::size_t draws = posed.draws.size();
+    return object < draws ? posed.material(posed.draws[object])
+                          : posed.scene->materials[posed.spheres[object - draws].material];
+}
 
 bool blends(const PosedScene& posed, std::uint32_t object)
 {
-    const std::size_t draws = posed.draws.size();
-    const Index material =
-        object < draws ? posed.primitive(posed.draws[object]).material : posed.spheres[object - draws].material;
-    return posed.scene->materials[material].alpha_mode == AlphaMode::blend;
+    return material_of(posed, object).alpha_mode == AlphaMode::blend;
 }
 
 /// Camera-space depth of the centre of an object's own box.
@@ -66,8 +73,9 @@ double sorting_depth(const PosedScene& posed, const CameraRays& camera, std::uin
     return camera.depth(dvec3(draw.world_from_object * dvec4(0.5 * (low + high), 1)));
 }
 
-DrawList make_draw_list(const PosedScene& posed, const CameraRays& camera)
+DrawList make_draw_list(const PosedScene& posed, const RasterShader& shader)
 {
+    const CameraRays& camera = shader.camera();
     const auto count = static_cast<std::uint32_t>(posed.draws.size() + posed.spheres.size());
     std::vector<std::uint32_t> order(count);
     std::vector<double> depth(count, 0);
@@ -77,11 +85,15 @@ DrawList make_draw_list(const PosedScene& posed, const CameraRays& camera)
     }
     const auto middle =
         std::stable_partition(order.begin(), order.end(), [&](std::uint32_t i) { return !blends(posed, i); });
+    const auto transmits = [&](std::uint32_t i) { return shader.transmits(material_of(posed, i)); };
+    const auto second = std::stable_partition(order.begin(), middle, [&](std::uint32_t i) { return !transmits(i); });
     std::stable_sort(middle, order.end(), [&](std::uint32_t a, std::uint32_t b) { return depth[a] > depth[b]; });
 
     const dmat4 clip_from_camera = projection(posed.view, far_plane(posed, camera));
     DrawList list;
+    list.transmits = std::any_of(second, order.end(), transmits);
     for (auto it = order.begin(); it != order.end(); ++it) {
+        if (it == second) list.first_transmitting = list.pieces.size();
         if (it == middle) list.first_blended = list.pieces.size();
         if (*it < posed.draws.size()) {
             const std::vector<Piece> pieces = pieces_of_draw(posed, *it, clip_from_camera);
@@ -90,6 +102,7 @@ DrawList make_draw_list(const PosedScene& posed, const CameraRays& camera)
             list.pieces.push_back(*piece);
         }
     }
+    if (second == order.end()) list.first_transmitting = list.pieces.size();
     if (middle == order.end()) list.first_blended = list.pieces.size();
     return list;
 }
@@ -117,6 +130,9 @@ class Band {
         depth_.assign(count, 0);  // reversed: 0 is infinitely far
     }
 
+    /// What transmitting pieces show from now on.
+    void set_behind(const PictureBehind* behind) { behind_ = behind; }
+
     void draw(const Piece& piece, bool blend)
     {
         const bool sphere = piece.object >= posed_->draws.size();
@@ -130,6 +146,15 @@ class Band {
     {
         dvec4 sum(0);
         for (std::size_t s = 0; s < positions_.size(); ++s) sum += color_[at(x, y) + s];
+        return sum / static_cast<double>(positions_.size());
+    }
+
+    /// The same of what has been drawn, without the background: premultiplied.
+    dvec4 resolve_drawn(int x, int y) const
+    {
+        dvec4 sum(0);
+        for (std::size_t s = 0; s < positions_.size(); ++s)
+            if (depth_[at(x, y) + s] > 0) sum += color_[at(x, y) + s];
         return sum / static_cast<double>(positions_.size());
     }
 
@@ -155,6 +180,7 @@ class Band {
     const World* world_;
     const PosedScene* posed_;
     const RasterShader* shader_;
+    const PictureBehind* behind_ = nullptr;
     int y0_, y1_;
     double far_;
     std::vector<FixedPoint> positions_;
@@ -201,6 +227,9 @@ std::optional<Fragment> Band::triangle_fragment(const Piece& piece, int x, int y
     out.attributes = interpolate(primitive, frame, piece.vertices, at.b.x, at.b.y);
     out.position = p0 + at.b.x * (p1 - p0) + at.b.y * (p2 - p0);
     out.object = piece.object;
+    out.film = {x + 0.5, y + 0.5};
+    const dmat3 m(draw.world_from_object);
+    out.scale = std::cbrt(std::abs(dot(cross(m[0], m[1]), m[2])));
     out.front = piece.front;
     TexturePoint& texture = out.attributes.at;
     texture.has_footprint = true;
@@ -262,6 +291,8 @@ void Band::draw_sphere(const Piece& piece, int x, int y, bool blend)
     Fragment fragment;
     fragment.material = &posed_->scene->materials[sphere.material];
     fragment.object = piece.object;
+    fragment.film = {x + 0.5, y + 0.5};
+    fragment.scale = sphere.radius / posed_->scene->nodes[sphere.node].sphere->radius;
     const Ray ray = camera.pinhole({x + 0.5, y + 0.5});
     double distance;
     if (const auto at = meet(*posed_, sphere, camera, ray)) {
@@ -286,7 +317,7 @@ void Band::draw_sphere(const Piece& piece, int x, int y, bool blend)
 
 void Band::write(int x, int y, const std::array<double, 4>& depth, const Fragment& fragment, bool blend)
 {
-    const auto shaded = shader_->shade(fragment);
+    const auto shaded = shader_->shade(fragment, behind_);
     if (!shaded) return;
     for (std::size_t s = 0; s < positions_.size(); ++s) {
         if (depth[s] == kUncovered) continue;
@@ -298,6 +329,16 @@ void Band::write(int x, int y, const std::array<double, 4>& depth, const Fragmen
             depth_[at(x, y) + s] = depth[s];
         }
     }
+}
+
+/// Of the rows of band `b`: column, row, index in the film.
+template <class Visit>
+void for_each_pixel(std::size_t b, int width, int height, Visit&& visit)
+{
+    const int y0 = static_cast<int>(b) * kBandRows;
+    for (int y = y0; y < std::min(height, y0 + kBandRows); ++y)
+        for (int x = 0; x < width; ++x)
+            visit(x, y, static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x));
 }
 
 }  // namespace
@@ -312,11 +353,11 @@ Film render_raster(const PosedScene& posed, const Requirements& required, const 
     progress.report({.stage = "decoding textures", .fraction = 0, .error = {}, .samples = {}});
     const World world(posed, required.texture_used, settings.mipmaps);
     const RasterShader shader(world, settings);
-    const DrawList list = make_draw_list(posed, shader.camera());
+    const DrawList list = make_draw_list(posed, shader);
 
     const int width = posed.view.width, height = posed.view.height;
-    const auto bands = static_cast<std::size_t>((height + kBandRows - 1) / kBandRows);
-    std::vector<std::vector<std::uint32_t>> by_band(bands);
+    const auto count = static_cast<std::size_t>((height + kBandRows - 1) / kBandRows);
+    std::vector<std::vector<std::uint32_t>> by_band(count);
     for (std::uint32_t i = 0; i < list.pieces.size(); ++i) {
         const Piece& piece = list.pieces[i];
         for (int b = piece.y0 / kBandRows; b * kBandRows < piece.y1; ++b)
@@ -329,25 +370,51 @@ Film render_raster(const PosedScene& posed, const Requirements& required, const 
     film.samples = static_cast<std::uint64_t>(settings.msaa);
     film.mean.assign(film.pixel_count(), vec3(0));
     film.alpha.assign(film.pixel_count(), 0);
-    std::vector<std::uint64_t> nonfinite(bands, 0);
-    parallel_for(
-        bands,
-        [&](std::size_t b) {
-            if (progress.stopped()) return;
-            const int y0 = static_cast<int>(b) * kBandRows, y1 = std::min(height, y0 + kBandRows);
-            Band band(world, shader, y0, y1, settings.msaa);
-            for (const std::uint32_t i : by_band[b]) band.draw(list.pieces[i], i >= list.first_blended);
-            for (int y = y0; y < y1; ++y)
-                for (int x = 0; x < width; ++x) {
-                    const dvec4 pixel = band.resolve(x, y);
-                    const std::size_t at =
-                        static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-                    film.mean[at] = vec3(pixel);
-                    film.alpha[at] = static_cast<float>(pixel.w);
-                    if (!is_finite(dvec3(pixel))) ++nonfinite[b];
-                }
-        },
-        settings.threads);
+    std::vector<std::uint64_t> nonfinite(count, 0);
+    const auto finish = [&](std::size_t b, Band& band, const PictureBehind* behind) {
+        band.set_behind(behind);
+        for (const std::uint32_t i : by_band[b])
+            if (i >= list.first_transmitting) band.draw(list.pieces[i], i >= list.first_blended);
+        for_each_pixel(b, width, height, [&](int x, int y, std::size_t at) {
+            const dvec4 pixel = band.resolve(x, y);
+            film.mean[at] = vec3(pixel);
+            film.alpha[at] = static_cast<float>(pixel.w);
+            if (!is_finite(dvec3(pixel))) ++nonfinite[b];
+        });
+    };
+    const auto start = [&](std::size_t b) {
+        const int y0 = static_cast<int>(b) * kBandRows, y1 = std::min(height, y0 + kBandRows);
+        Band band(world, shader, y0, y1, settings.msaa);
+        for (const std::uint32_t i : by_band[b])
+            if (i < list.first_transmitting) band.draw(list.pieces[i], false);
+        return band;
+    };
+    const auto over_bands = [&](auto&& work) {
+        parallel_for(
+            count,
+            [&](std::size_t b) {
+                if (!progress.stopped()) work(b);
+            },
+            settings.threads);
+    };
+    if (!list.transmits) {
+        over_bands([&](std::size_t b) {
+            Band band = start(b);
+            finish(b, band, nullptr);
+        });
+    } else {
+        std::vector<std::optional<Band>> bands(count);
+        std::vector<dvec4> drawn(film.pixel_count(), dvec4(0));
+        over_bands([&](std::size_t b) {
+            bands[b].emplace(start(b));
+            for_each_pixel(b, width, height,
+                           [&](int x, int y, std::size_t at) { drawn[at] = bands[b]->resolve_drawn(x, y); });
+        });
+        const PictureBehind behind({width, height}, std::move(drawn));
+        over_bands([&](std::size_t b) {
+            if (bands[b]) finish(b, *bands[b], &behind);
+        });
+    }
     for (const std::uint64_t n : nonfinite) film.nonfinite += n;
     if (settings.aovs) film.aovs = render_aovs(world, shader.camera(), true, settings.threads);
     progress.report({.stage = "rasterizing", .fraction = 1, .error = {}, .samples = {}});

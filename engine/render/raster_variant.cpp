@@ -180,8 +180,10 @@ void RasterVariants::set_layers(RasterVariant& variant, const MaterialLayers& m)
                   {T::clearcoat, T::clearcoat_roughness, T::clearcoat_normal});
     if (m.sheen_color != dvec3(0))
         set_layer(variant, C::sheen, Feature::sheen, m, {T::sheen_color, T::sheen_roughness});
-    if (m.transmission > 0) set_layer(variant, C::transmission, Feature::transmission, m, {T::transmission});
-    if (m.volumetric()) set_layer(variant, C::volume, Feature::volume, m, {T::thickness});
+    // An infinite index is a mirror (SH-58).
+    if (m.transmission > 0 && m.ior != 0)
+        set_layer(variant, C::transmission, Feature::transmission, m, {T::transmission});
+    if (m.volumetric() && m.ior != 0) set_layer(variant, C::volume, Feature::volume, m, {T::thickness});
     if (m.volumetric() && m.dispersion > 0) set_layer(variant, C::dispersion, Feature::dispersion, m, {});
     if (m.iridescence > 0)
         set_layer(variant, C::iridescence, Feature::iridescence, m, {T::iridescence, T::iridescence_thickness});

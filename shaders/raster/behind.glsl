@@ -70,7 +70,7 @@ vec3 light_from_behind(Seen v, vec3 position, vec2 pixel)
     const Layers l = v.s.layers;
     vec3 sum;
     if (kVolume && kDispersion && l.ior_spread != 0.0) {
-        sum = vec3(seen_through(v, position, pixel, l.ior - l.ior_spread).r, seen_through(v, position, pixel, l.ior).g,
+        sum = vec3(seen_through(v, position, pixel, max(l.ior - l.ior_spread, 1.0)).r, seen_through(v, position, pixel, l.ior).g,
                    seen_through(v, position, pixel, l.ior + l.ior_spread).b);
     } else {
         sum = seen_through(v, position, pixel, l.ior);

@@ -134,7 +134,7 @@ void resolve_transmission(LayerRecord layer, Point point, inout Layers l)
     l.thickness = layer.thickness * point.scale;
     if (kThicknessMap) l.thickness *= read(thickness_map, layer.thickness_texture, point).g;
     l.absorption = layer.absorption;
-    l.ior = layer.ior;
+    l.ior = max(layer.ior, 1.0);
     l.ior_spread = kDispersion ? (layer.ior - 1.0) * 0.025 * layer.dispersion : 0.0;
 }
 
