@@ -274,6 +274,7 @@ std::optional<BsdfSample> sample(const Bsdf& bsdf, const dvec3& wo, const dvec3&
     if (wo.z <= 0) return std::nullopt;
     switch (bsdf.model) {
         case BsdfModel::unlit:
+        case BsdfModel::specular_glossiness:  // LayeredBsdf's
             return std::nullopt;
         case BsdfModel::mirror:
             return BsdfSample{.wi = {-wo.x, -wo.y, wo.z}, .weight = bsdf.color, .pdf = 1, .delta = true};

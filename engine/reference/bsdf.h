@@ -7,6 +7,8 @@
 
 namespace etalon::reference {
 
+inline constexpr double kSmallestMicrofacetAlpha = 1e-3;  ///< of glTF's models (SH-14)
+
 /// How a point of a surface scatters. Directions are unit, in the frame whose +Z is the shading normal on the viewer's
 /// side; `wo` (to the viewer) has z > 0. docs/shading.md §2.
 struct Bsdf {

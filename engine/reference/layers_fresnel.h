@@ -4,7 +4,7 @@
 namespace etalon::reference {
 
 /// (SH-51) A film on the surface.
-struct Film {
+struct ThinFilm {
     double strength = 0;  ///< 0 … 1
     double ior = 1.3;
     double thickness = 0;  ///< nanometres
@@ -20,7 +20,7 @@ struct BaseReflectance {
     double metallic = 0;
     dvec3 f0{0.04};  ///< F0_d
     double f90 = 1;  ///< F90_d
-    Film film;
+    ThinFilm film;
 
     struct Value {
         dvec3 f{0};    ///< F

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "engine/reference/layers_point.h"
 #include "shaders/shared/rng.h"
 
 namespace etalon::reference {
@@ -40,23 +41,15 @@ std::uint32_t fold_seed(std::uint64_t seed)
     return static_cast<std::uint32_t>(z ^ (z >> 31));
 }
 
-// The frame of a BSDF: +Z along `n`.
-struct ShadingFrame {
-    explicit ShadingFrame(const dvec3& normal) : n(normal)
-    {
-        const dvec3 other = std::abs(n.x) > 0.7 ? dvec3(0, 1, 0) : dvec3(1, 0, 0);
-        t = normalize(cross(other, n));
-        b = cross(n, t);
-    }
-    dvec3 local(const dvec3& w) const { return {dot(w, t), dot(w, b), dot(w, n)}; }
-    dvec3 world(const dvec3& l) const { return l.x * t + l.y * b + l.z * n; }
-    dvec3 t, b, n;
-};
-
 // Light from wi that the shading normal would let in must come from the same side of the surface itself.
 bool sides_agree(const Surface& s, const dvec3& wi)
 {
     return (dot(s.n, wi) > 0) == (dot(s.ng, wi) > 0);
+}
+
+bool is_delta(const Surface& s)
+{
+    return !s.layered && s.bsdf.is_delta();
 }
 
 struct Response {
@@ -66,10 +59,34 @@ struct Response {
 
 Response respond(const Surface& s, const dvec3& wo, const dvec3& wi)
 {
+    const dvec3 o = s.frame.local(wo), i = s.frame.local(wi);
+    if (s.layered) return {evaluate(*s.layered, o, i), pdf(*s.layered, o, i)};
     if (!sides_agree(s, wi)) return {};
-    const ShadingFrame frame(s.n);
-    const dvec3 o = frame.local(wo), i = frame.local(wi);
     return {evaluate(s.bsdf, o, i), pdf(s.bsdf, o, i)};
+}
+
+// A draw in the world's frame.
+std::optional<BsdfSample> scatter(const Surface& s, const dvec3& wo, const dvec3& u)
+{
+    const dvec3 o = s.frame.local(wo);
+    auto drawn = s.layered ? sample(*s.layered, o, u) : sample(s.bsdf, o, u);
+    if (!drawn) return std::nullopt;
+    drawn->wi = s.frame.world(drawn->wi);
+    if (!s.layered && !sides_agree(s, drawn->wi)) return std::nullopt;
+    return drawn;
+}
+
+// (SH-59) The body whose medium light from `wi` comes through, where wo's comes through `medium`; null: none.
+const MaterialLayers* medium_towards(const World& world, const Surface& s, const dvec3& wi,
+                                     const MaterialLayers* medium)
+{
+    if (!s.layered || !s.layered->body || dot(wi, s.ng) > 0) return medium;
+    return s.front ? &*world.posed->scene->materials[s.material].layers : nullptr;
+}
+
+dvec3 through(const MaterialLayers* medium, double distance)
+{
+    return medium == nullptr ? dvec3(1) : absorption(*medium, distance);
 }
 
 }  // namespace
@@ -131,6 +148,7 @@ PathResult PathTracer::trace(const dvec2& film, const PathRandom& random) const
     bool by_delta = true;  // no light sampling competes with the ray that is traced
     double ray_pdf = 0;
     dvec3 from(0);
+    const MaterialLayers* medium = nullptr;
     for (int depth = 1;; ++depth) {
         const auto hit = world_->index.closest(ray, [&](const Hit& h) {
             const double opaque = opacity(*world_, ray, h);
@@ -141,6 +159,8 @@ PathResult PathTracer::trace(const dvec2& film, const PathRandom& random) const
             return random.of_shape(static_cast<std::uint32_t>(depth), shape, leaving) < opaque;
         });
         const bool alone = by_delta || !choices_.sample_lights;
+        throughput *= through(medium, hit ? hit->t : std::numeric_limits<double>::infinity());
+        if (throughput == dvec3(0)) return result;
         if (!hit) {
             leave(ray, depth, throughput, alone ? 1 : power_heuristic(ray_pdf, environment_.pdf(ray.direction)),
                   result);
@@ -160,20 +180,21 @@ PathResult PathTracer::trace(const dvec2& film, const PathRandom& random) const
         const std::uint32_t dimension = kFirstVertex + kPerVertex * static_cast<std::uint32_t>(depth - 1);
         const dvec3 wo = -ray.direction;
         if (choices_.sample_lights)
-            result.radiance += throughput * direct(surface, wo, random, dimension);
+            result.radiance += throughput * direct(surface, wo, medium, random, dimension);
         else
-            result.radiance += throughput * from_punctual(surface, wo, random.pair(dimension + kPicks).y);
+            result.radiance += throughput * from_punctual(surface, wo, medium, random.pair(dimension + kPicks).y);
 
-        const ShadingFrame frame(surface.n);
         const dvec2 lobe = random.pair(dimension + kLobeAndRoulette);
-        const auto scattered =
-            sample(surface.bsdf, frame.local(wo), dvec3(random.pair(dimension + kDirection), lobe.x));
+        const auto scattered = scatter(surface, wo, dvec3(random.pair(dimension + kDirection), lobe.x));
         if (!scattered) return result;
-        const dvec3 wi = frame.world(scattered->wi);
-        if (!sides_agree(surface, wi)) return result;
+        const dvec3 wi = scattered->wi;
         throughput *= scattered->weight;
         if (throughput == dvec3(0)) return result;
-        if (dot(wi, surface.ng) < 0) spread *= surface.bsdf.ior * surface.bsdf.ior;
+        if (dot(wi, surface.ng) < 0) {
+            const double ior = surface.layered ? surface.layered->relative_ior() : surface.bsdf.ior;
+            spread *= ior * ior;
+        }
+        medium = medium_towards(*world_, surface, wi, medium);
         by_delta = scattered->delta;
         ray_pdf = scattered->pdf;
         if (russian_roulette_ && depth >= kFirstRoulette) {  // (MC-4)
@@ -202,19 +223,19 @@ double PathTracer::visibility(const Surface& surface, const dvec3& target, std::
 constexpr std::uint32_t kNoShape = 0xffffffffu;
 
 // Next-event estimation: one point of an emitter, one punctual light, one direction of the environment.
-dvec3 PathTracer::direct(const Surface& surface, const dvec3& wo, const PathRandom& random,
-                         std::uint32_t dimension) const
+dvec3 PathTracer::direct(const Surface& surface, const dvec3& wo, const MaterialLayers* medium,
+                         const PathRandom& random, std::uint32_t dimension) const
 {
-    if (surface.bsdf.is_delta()) return dvec3(0);
+    if (is_delta(surface)) return dvec3(0);
     dvec3 sum(0);
-    if (!area_.empty()) sum += from_area(surface, wo, random, dimension);
-    if (!posed_->lights.empty()) sum += from_punctual(surface, wo, random.pair(dimension + kPicks).y);
-    if (!environment_.empty()) sum += from_environment(surface, wo, random.pair(dimension + kEnvironment));
+    if (!area_.empty()) sum += from_area(surface, wo, medium, random, dimension);
+    if (!posed_->lights.empty()) sum += from_punctual(surface, wo, medium, random.pair(dimension + kPicks).y);
+    if (!environment_.empty()) sum += from_environment(surface, wo, medium, random.pair(dimension + kEnvironment));
     return sum;
 }
 
-dvec3 PathTracer::from_area(const Surface& surface, const dvec3& wo, const PathRandom& random,
-                            std::uint32_t dimension) const
+dvec3 PathTracer::from_area(const Surface& surface, const dvec3& wo, const MaterialLayers* medium,
+                            const PathRandom& random, std::uint32_t dimension) const
 {
     const auto light =
         area_.sample(surface.position, random.pair(dimension + kPicks).x, random.pair(dimension + kAreaPoint));
@@ -222,16 +243,20 @@ dvec3 PathTracer::from_area(const Surface& surface, const dvec3& wo, const PathR
     const Response response = respond(surface, wo, light->wi);
     if (response.value == dvec3(0)) return dvec3(0);
     const double visible = visibility(surface, light->point, light->shape);
-    return visible * power_heuristic(light->pdf, response.pdf) / light->pdf * response.value * light->radiance;
+    const MaterialLayers* beyond = medium_towards(*world_, surface, light->wi, medium);
+    return through(beyond, length(light->point - surface.position)) * visible *
+           power_heuristic(light->pdf, response.pdf) / light->pdf * response.value * light->radiance;
 }
 
 // All punctual lights are weighed, one is chosen by what it would bring unshadowed, and one shadow ray is traced.
-dvec3 PathTracer::from_punctual(const Surface& surface, const dvec3& wo, double pick) const
+dvec3 PathTracer::from_punctual(const Surface& surface, const dvec3& wo, const MaterialLayers* medium,
+                                double pick) const
 {
-    if (surface.bsdf.is_delta()) return dvec3(0);
+    if (is_delta(surface)) return dvec3(0);
     const auto contribution = [&](const PosedLight& light, const Incident& in) {
         if (in.irradiance == dvec3(0) || light.light.intensity == 0) return dvec3(0);
-        return respond(surface, wo, in.wi).value * in.irradiance;
+        return respond(surface, wo, in.wi).value * in.irradiance *
+               through(medium_towards(*world_, surface, in.wi, medium), in.distance);
     };
     double total = 0;
     for (const PosedLight& light : posed_->lights)
@@ -255,7 +280,8 @@ dvec3 PathTracer::from_punctual(const Surface& surface, const dvec3& wo, double 
     return dvec3(0);
 }
 
-dvec3 PathTracer::from_environment(const Surface& surface, const dvec3& wo, const dvec2& u) const
+dvec3 PathTracer::from_environment(const Surface& surface, const dvec3& wo, const MaterialLayers* medium,
+                                   const dvec2& u) const
 {
     const EnvironmentSampler::Sample light = environment_.sample(u);
     if (!(light.pdf > 0)) return dvec3(0);
@@ -265,7 +291,9 @@ dvec3 PathTracer::from_environment(const Surface& surface, const dvec3& wo, cons
                   .direction = light.direction};
     const double visible = visibility(ray, kNoShape);
     if (visible == 0) return dvec3(0);
-    return visible * power_heuristic(light.pdf, response.pdf) / light.pdf * response.value *
+    const MaterialLayers* beyond = medium_towards(*world_, surface, light.direction, medium);
+    return through(beyond, std::numeric_limits<double>::infinity()) * visible *
+           power_heuristic(light.pdf, response.pdf) / light.pdf * response.value *
            environment_radiance(posed_->environment, light.direction);
 }
 

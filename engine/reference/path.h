@@ -46,12 +46,15 @@ class PathTracer {
     const CameraRays& camera() const { return camera_; }
 
  private:
-    dvec3 direct(const Surface& surface, const dvec3& wo, const PathRandom& random, std::uint32_t dimension) const;
+    // `medium`: of the body that wo's ray came through, null outside of all (SH-59).
+    dvec3 direct(const Surface& surface, const dvec3& wo, const MaterialLayers* medium, const PathRandom& random,
+                 std::uint32_t dimension) const;
+    dvec3 from_area(const Surface& surface, const dvec3& wo, const MaterialLayers* medium, const PathRandom& random,
+                    std::uint32_t dimension) const;
+    dvec3 from_punctual(const Surface& surface, const dvec3& wo, const MaterialLayers* medium, double pick) const;
+    dvec3 from_environment(const Surface& surface, const dvec3& wo, const MaterialLayers* medium, const dvec2& u) const;
     double visibility(const Surface& surface, const dvec3& target, std::uint32_t light) const;
     double visibility(const Ray& ray, std::uint32_t light) const;
-    dvec3 from_area(const Surface& surface, const dvec3& wo, const PathRandom& random, std::uint32_t dimension) const;
-    dvec3 from_punctual(const Surface& surface, const dvec3& wo, double pick) const;
-    dvec3 from_environment(const Surface& surface, const dvec3& wo, const dvec2& u) const;
     void leave(const Ray& ray, int depth, const dvec3& throughput, double weight, PathResult& result) const;
 
     const PosedScene* posed_;

@@ -1,13 +1,14 @@
 #include "engine/reference/surface.h"
 
+#include "engine/reference/layers_point.h"
+
 #include <cmath>
 
 namespace etalon::reference {
 namespace {
 
 constexpr double kUnit = std::numeric_limits<double>::epsilon() / 2;
-constexpr double kSmallestMicrofacetAlpha = 1e-3;  // (SH-14)
-constexpr double kSmallestAlpha = 1e-4;            // exact models below it: D overflows long before it matters (S7)
+constexpr double kSmallestAlpha = 1e-4;  // exact models below it: D overflows long before it matters (S7)
 
 dvec3 normalized_or(const dvec3& v, const dvec3& otherwise)
 {
@@ -41,6 +42,17 @@ bool is_exact_model(BsdfModel model)
            model != BsdfModel::unlit;
 }
 
+bool is_layered(const Material& material)
+{
+    return material.model == BsdfModel::specular_glossiness ||
+           (material.model == BsdfModel::metallic_roughness && material.layers);
+}
+
+bool is_body(const Material& material)
+{
+    return is_layered(material) && material.layers && material.layers->volumetric();
+}
+
 bool is_dielectric(BsdfModel model)
 {
     return model == BsdfModel::dielectric || model == BsdfModel::rough_dielectric;
@@ -65,15 +77,32 @@ ShareTable ggx_share_of(const Scene& scene)
     return used.x > used.y ? ShareTable() : ShareTable(kGgxShare, used);
 }
 
+// (SH-61) E_s likewise.
+ShareTable sheen_share_of(const Scene& scene)
+{
+    dvec2 used(1, 0);
+    for (const Material& m : scene.materials) {
+        if (!m.layers || m.layers->sheen_color == dvec3(0)) continue;
+        const double highest = sheen_alpha(m.layers->sheen_roughness);
+        used.x = std::min(used.x, m.layers->sheen_roughness_texture.present() ? sheen_alpha(0) : highest);
+        used.y = std::max(used.y, highest);
+    }
+    return used.x > used.y ? ShareTable() : ShareTable(kSheenShare, used);
+}
+
 }  // namespace
 
 World::World(const PosedScene& p, const std::vector<bool>& textures_used, bool mipmaps)
     : posed(&p), index(p), textures(*p.scene, textures_used, mipmaps)
 {
-    if (!mipmaps) ggx_share = ggx_share_of(*p.scene);
+    if (!mipmaps) {
+        ggx_share = ggx_share_of(*p.scene);
+        sheen_share = sheen_share_of(*p.scene);
+    }
     for (const Draw& draw : p.draws) frames.push_back(frame_of(draw.world_from_object));
     for (const Material& m : p.scene->materials)
-        always_opaque.push_back(m.alpha_mode == AlphaMode::opaque && (m.double_sided || is_exact_model(m.model)));
+        always_opaque.push_back(m.alpha_mode == AlphaMode::opaque &&
+                                (m.double_sided || is_exact_model(m.model) || is_body(m)));
 }
 
 Attributes interpolate(const Primitive& primitive, const World::Frame& frame, const std::array<std::uint32_t, 3>& v,
@@ -100,9 +129,15 @@ MaterialPoint evaluate(const Material& m, const TextureSet& textures, const Attr
         m.base_color * attributes.color * textures.sample(m.base_color_texture, Coding::srgb, attributes.at);
     out.color = dvec3(base);
     out.alpha = m.alpha_mode == AlphaMode::opaque ? 1 : base.w;
-    const dvec4 mr = textures.sample(m.metallic_roughness_texture, Coding::linear, attributes.at);
-    out.metallic = m.metallic * mr.z;
-    out.roughness = m.roughness * mr.y;
+    if (m.model == BsdfModel::specular_glossiness) {  // (SH-50)
+        const dvec4 texel = textures.sample(m.metallic_roughness_texture, Coding::srgb, attributes.at);
+        out.specular = m.k * dvec3(texel);
+        out.roughness = 1 - (1 - m.roughness) * texel.w;
+    } else {
+        const dvec4 texel = textures.sample(m.metallic_roughness_texture, Coding::linear, attributes.at);
+        out.metallic = m.metallic * texel.z;
+        out.roughness = m.roughness * texel.y;
+    }
     if (m.occlusion_texture.present())
         out.occlusion =
             1 + m.occlusion_strength * (textures.sample(m.occlusion_texture, Coding::linear, attributes.at).x - 1);
@@ -113,14 +148,20 @@ MaterialPoint evaluate(const Material& m, const TextureSet& textures, const Attr
     return out;
 }
 
-dvec3 shading_normal(const Material& m, const TextureSet& textures, const Attributes& attributes, const dvec3& ng)
+dvec3 mapped_normal(const TextureUse& map, double scale, const TextureSet& textures, const Attributes& attributes,
+                    const dvec3& ng)
 {
     const dvec3 n = normalized_or(attributes.normal, ng);
-    if (!m.normal_texture.present() || attributes.tangent.w == 0) return n;
-    const dvec3 texel = 2.0 * dvec3(textures.sample(m.normal_texture, Coding::linear, attributes.at)) - 1.0;
+    if (!map.present() || attributes.tangent.w == 0) return n;
+    const dvec3 texel = 2.0 * dvec3(textures.sample(map, Coding::linear, attributes.at)) - 1.0;
     const dvec3 t = normalized_or(dvec3(attributes.tangent), dvec3(0));
     const dvec3 b = cross(n, t) * attributes.tangent.w;
-    return normalized_or(m.normal_scale * (texel.x * t + texel.y * b) + texel.z * n, n);
+    return normalized_or(scale * (texel.x * t + texel.y * b) + texel.z * n, n);
+}
+
+dvec3 shading_normal(const Material& m, const TextureSet& textures, const Attributes& attributes, const dvec3& ng)
+{
+    return mapped_normal(m.normal_texture, m.normal_scale, textures, attributes, ng);
 }
 
 Bsdf bsdf_of(const Material& m, const MaterialPoint& point, bool front)
@@ -199,9 +240,16 @@ Surface surface_at(const World& world, const Ray& ray, const Hit& hit)
     if (dot(s.n, wo) <= 0) s.n = s.ng;  // (SH-4)
     const bool emits = s.front || (material.double_sided && !material.emits_front_only);
     if (emits || material.model == BsdfModel::unlit) s.emission = s.point.emission;
+    s.frame = ShadingFrame(s.n);
+    const bool black_back =
+        !s.front && !material.double_sided && !is_dielectric(material.model) && !is_body(material);  // (SH-6), (SH-63)
+    if (is_layered(material)) {
+        set_layered_bsdf(s, world, material, wo);
+        s.is_black = black_back;
+        return s;
+    }
     s.bsdf = bsdf_of(material, s.point, s.front);
     s.bsdf.energy = &world.ggx_share;
-    const bool black_back = !s.front && !material.double_sided && !is_dielectric(material.model);  // (SH-6)
     s.is_black = black_back || s.bsdf.is_black();
     return s;
 }
@@ -210,11 +258,15 @@ dvec3 emission_at(const World& world, const Ray& ray, const Hit& hit)
 {
     const Shape& shape = world.index.shapes()[hit.shape];
     const Material& m = world.material(shape);
-    const bool front = dot(geometric_normal(shape, ray.origin + hit.t * ray.direction), ray.direction) < 0;
+    const dvec3 ng = geometric_normal(shape, ray.origin + hit.t * ray.direction);
+    const bool front = dot(ng, ray.direction) < 0;
     if (!front && (!m.double_sided || m.emits_front_only)) return dvec3(0);
-    if (!m.emissive_texture.present()) return m.emission;
+    const bool coated = is_layered(m) && m.layers && m.layers->clearcoat > 0;
+    if (!m.emissive_texture.present() && !coated) return m.emission;
     const Attributes attributes = attributes_at(world, shape, hit);
-    return m.emission * dvec3(world.textures.sample(m.emissive_texture, Coding::srgb, attributes.at));
+    const dvec3 emission = m.emission * dvec3(world.textures.sample(m.emissive_texture, Coding::srgb, attributes.at));
+    if (!coated) return emission;
+    return emission * (1 - coat_at(m, world.textures, attributes, ng, -normalize(ray.direction)).weight);  // (SH-62)
 }
 
 double opacity(const World& world, const Ray& ray, const Hit& hit, bool cull_all)
@@ -222,7 +274,8 @@ double opacity(const World& world, const Ray& ray, const Hit& hit, bool cull_all
     const Shape& shape = world.index.shapes()[hit.shape];
     if (world.always_opaque[shape.material] && !cull_all) return 1;
     const Material& m = world.material(shape);
-    const bool passes_back = !m.double_sided && (cull_all ? !is_dielectric(m.model) : !is_exact_model(m.model));
+    const bool passes_back =
+        !m.double_sided && (cull_all ? !is_dielectric(m.model) : !is_exact_model(m.model) && !is_body(m));
     if (passes_back) {
         const dvec3 ng = geometric_normal(shape, ray.origin + hit.t * ray.direction);
         if (!(dot(ng, ray.direction) < 0)) return 0;

@@ -3,6 +3,8 @@
 #include <vector>
 
 #include "engine/reference/bsdf.h"
+#include "engine/reference/layers.h"
+#include "engine/reference/layers_lobes.h"
 #include "engine/reference/scene_index.h"
 #include "engine/reference/texture.h"
 #include "engine/scene/pose.h"
@@ -27,6 +29,7 @@ struct World {
     SceneIndex index;
     TextureSet textures;
     ShareTable ggx_share;             ///< for the roughnesses that occur; empty where nothing asks, and for rasterizers
+    ShareTable sheen_share;           ///< likewise
     std::vector<Frame> frames;        ///< of each draw
     std::vector<bool> always_opaque;  ///< per material: stops every ray, whatever its side
 };
@@ -50,10 +53,14 @@ struct MaterialPoint {
     double metallic = 0;
     double roughness = 1;
     double occlusion = 1;  ///< (SH-36)
+    dvec3 specular{0};     ///< specular_glossiness: F0
     dvec3 emission{0};     ///< (SH-21), before the side is known; base colour of unlit (SH-15)
 };
 MaterialPoint evaluate(const Material& material, const TextureSet& textures, const Attributes& attributes);
 
+/// (SH-2) The interpolated normal under the normal map `map`; `ng` where there is nothing better.
+dvec3 mapped_normal(const TextureUse& map, double scale, const TextureSet& textures, const Attributes& attributes,
+                    const dvec3& ng);
 /// (SH-2) The shading normal, unit, on the geometric one's side as the file means it. `ng` where there is nothing
 /// better.
 dvec3 shading_normal(const Material& material, const TextureSet& textures, const Attributes& attributes,
@@ -69,11 +76,18 @@ struct Surface {
     dvec3 emission{0};  ///< towards the viewer
     MaterialPoint point;
     Attributes attributes;
+    ShadingFrame frame{dvec3(0, 0, 1)};  ///< that of the BSDF, about n
     Bsdf bsdf;
-    bool is_black = false;  ///< scatters nothing
+    std::optional<LayeredBsdf> layered;  ///< where there is one, it holds in place of bsdf
+    bool is_black = false;               ///< scatters nothing
     std::uint32_t object = 0;
     Index material = 0;
 };
+
+/// A material that LayeredBsdf describes.
+bool is_layered(const Material& material);
+/// (SH-58), (SH-63) A material that encloses a medium: both its sides are met.
+bool is_body(const Material& material);
 
 /// The surface at `hit`, seen against `direction` (unit).
 Surface surface_at(const World& world, const Ray& ray, const Hit& hit);
