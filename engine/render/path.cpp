@@ -68,7 +68,7 @@ struct PathTracer::State {
           frame(d, {.size = sizeof(shared::PathFrame), .name = "path frame"})
     {
         scene.frame.max_depth = std::min(scene.frame.max_depth, kMostDepth);
-        queues = make_path_queues(d, kWaveCapacity, scene.frame.max_depth);
+        queues = make_path_queues(d, kWaveCapacity, scene.frame.max_depth, scene.features.volume);
     }
 
     void resize(const View& view);

@@ -35,7 +35,8 @@ PathFeatures path_features(const PosedScene& posed, const Requirements& required
     out.spheres = has(Feature::spheres);
     out.normals = has(Feature::normals);
     out.uv = has(Feature::uv0) || has(Feature::uv1);
-    out.tangents = has(Feature::tangents) && has(Feature::normal_texture);
+    out.tangents =
+        has(Feature::tangents) && (has(Feature::normal_texture) || has(Feature::clearcoat) || has(Feature::anisotropy));
     out.colors = has(Feature::vertex_colors);
     out.base_color_texture = has(Feature::base_color_texture);
     out.metallic_roughness_texture = has(Feature::metallic_roughness_texture);
@@ -50,6 +51,17 @@ PathFeatures path_features(const PosedScene& posed, const Requirements& required
     out.rough_conductor = has(Feature::rough_conductor);
     out.dielectric = has(Feature::dielectric);
     out.rough_dielectric = has(Feature::rough_dielectric);
+    out.specular_glossiness = has(Feature::specular_glossiness);
+    out.specular = has(Feature::specular);
+    out.clearcoat = has(Feature::clearcoat);
+    out.sheen = has(Feature::sheen);
+    out.transmission = has(Feature::transmission);
+    out.volume = has(Feature::volume) && out.transmission;
+    out.iridescence = has(Feature::iridescence);
+    out.anisotropy = has(Feature::anisotropy);
+    out.dispersion = has(Feature::dispersion) && out.volume;
+    out.diffuse_transmission = has(Feature::diffuse_transmission);
+    out.layer_textures = has(Feature::layer_textures);
     out.emission = has(Feature::emission);
     out.punctual = has(Feature::punctual_lights);
     out.sky = has(Feature::environment_constant) || has(Feature::environment_map);
@@ -87,6 +99,17 @@ std::vector<gpu::Constant> path_constants(const PathFeatures& f)
             {kSpecRoughConductor, f.rough_conductor},
             {kSpecDielectric, f.dielectric},
             {kSpecRoughDielectric, f.rough_dielectric},
+            {kSpecSpecularGlossiness, f.specular_glossiness},
+            {kSpecSpecular, f.specular},
+            {kSpecClearcoat, f.clearcoat},
+            {kSpecSheen, f.sheen},
+            {kSpecTransmission, f.transmission},
+            {kSpecVolume, f.volume},
+            {kSpecIridescence, f.iridescence},
+            {kSpecAnisotropy, f.anisotropy},
+            {kSpecDispersion, f.dispersion},
+            {kSpecDiffuseTransmission, f.diffuse_transmission},
+            {kSpecLayerTextures, f.layer_textures},
             {kSpecEmission, f.emission},
             {kSpecPunctual, f.punctual},
             {kSpecSky, f.sky},

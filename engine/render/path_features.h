@@ -15,14 +15,19 @@ struct PathFeatures {
     bool texture_transform = false, wide_texels = false;
     bool alpha = false;
     bool metallic_roughness = false, unlit = false, lambert = false, mirror = false;
-    bool rough_conductor = false, dielectric = false, rough_dielectric = false;
+    bool rough_conductor = false, dielectric = false, rough_dielectric = false, specular_glossiness = false;
+    bool specular = false, clearcoat = false, sheen = false, transmission = false, volume = false;
+    bool iridescence = false, anisotropy = false, dispersion = false, diffuse_transmission = false;
+    bool layer_textures = false;
     bool emission = false, punctual = false, sky = false, sky_map = false;
     bool thin_lens = false, orthographic = false;
 
     bool textures() const
     {
-        return base_color_texture || metallic_roughness_texture || normal_texture || emissive_texture;
+        return base_color_texture || metallic_roughness_texture || normal_texture || emissive_texture || layer_textures;
     }
+    /// Some material reads the tables of engine/render/albedo.h.
+    bool albedo() const { return metallic_roughness || specular_glossiness; }
     /// Texels of a primitive in the attribute buffer.
     std::size_t attribute_stride() const { return 3u * (std::size_t(normals) + uv + tangents + colors); }
 };

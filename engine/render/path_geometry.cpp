@@ -9,6 +9,7 @@
 #include "engine/base/parallel.h"
 #include "engine/math/transform.h"
 #include "engine/render/path_emission.h"
+#include "engine/render/path_layers.h"
 #include "shaders/shared/path.h"
 
 namespace etalon {
@@ -158,9 +159,12 @@ class Flattening {
     std::uint32_t flags_of(Index index) const
     {
         const Material& m = material(index);
-        const bool gltf = m.model == BsdfModel::metallic_roughness || m.model == BsdfModel::unlit;
+        const bool gltf = m.model == BsdfModel::metallic_roughness || m.model == BsdfModel::unlit ||
+                          m.model == BsdfModel::specular_glossiness;
+        // (SH-63) The back of a body is the way out of it.
+        const bool body = features_.volume && layered(m) && m.layers->volumetric();
         std::uint32_t flags = index & shared::kPrimitiveMaterial;
-        if (gltf && !m.double_sided) flags |= shared::kPrimitiveCulled;
+        if (gltf && !m.double_sided && !body) flags |= shared::kPrimitiveCulled;
         if (m.alpha_mode != AlphaMode::opaque) flags |= shared::kPrimitiveAlpha;
         if (m.double_sided && !m.emits_front_only) flags |= shared::kPrimitiveEmitsBack;
         return flags;

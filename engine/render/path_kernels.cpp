@@ -92,7 +92,7 @@ PathKernels make_path_kernels(gpu::Device& device, const PathScene& scene, bool 
     return out;
 }
 
-PathQueues make_path_queues(gpu::Device& device, std::uint32_t capacity, std::uint32_t max_depth)
+PathQueues make_path_queues(gpu::Device& device, std::uint32_t capacity, std::uint32_t max_depth, bool with_medium)
 {
     const auto list = [&](const char* name, std::uint64_t bytes_each) {
         PathBuffer out;
@@ -102,8 +102,9 @@ PathQueues make_path_queues(gpu::Device& device, std::uint32_t capacity, std::ui
     };
     PathQueues out;
     out.capacity = capacity;
-    out.paths[0] = list("paths 0", 48);
-    out.paths[1] = list("paths 1", 48);
+    const std::uint64_t bytes_of_path = with_medium ? 64 : 48;
+    out.paths[0] = list("paths 0", bytes_of_path);
+    out.paths[1] = list("paths 1", bytes_of_path);
     out.hits.buffer = gpu::Buffer(device, {.size = 4 * std::uint64_t{capacity}, .name = "hits"});
     out.hits.view = gpu::TexelView(device, out.hits.buffer, VK_FORMAT_R32_UINT);
     out.shadows = list("shadow rays", 48);
@@ -152,7 +153,8 @@ PathBand make_path_band(gpu::Device& device, const PathScene& scene, const gpu::
                                            {kBindRetries, queues.retries},
                                            {kBindMean, out.mean},
                                            {kBindM2, out.m2},
-                                           {kBindAovs, aovs}};
+                                           {kBindAovs, aovs},
+                                           {kBindAlbedo, scene.albedo.view}};
         for (const gpu::ComputePipeline* kernel :
              {&kernels.generate, &kernels.generate_centres, &kernels.trace_paths, &kernels.trace_shadows,
               &kernels.trace_centres, &kernels.retry_paths, &kernels.retry_shadows, &kernels.retry_centres,

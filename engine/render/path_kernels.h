@@ -30,7 +30,8 @@ struct PathQueues {
     PathBuffer hits, shadows;
     gpu::Buffer counters, dispatches, retries;
 };
-PathQueues make_path_queues(gpu::Device& device, std::uint32_t capacity, std::uint32_t max_depth);
+/// `with_medium`: paths may be inside bodies (SH-59), and carry which.
+PathQueues make_path_queues(gpu::Device& device, std::uint32_t capacity, std::uint32_t max_depth, bool with_medium);
 
 /// Rows of the picture that share one set of buffers: all of it, but for pictures over 4 million pixels.
 struct PathBand {

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <cstring>
 
+#include "engine/render/albedo.h"
 #include "engine/render/material.h"
 #include "engine/render/path_alias.h"
+#include "engine/render/path_layers.h"
 #include "engine/render/path_sky.h"
 #include "engine/render/path_textures.h"
 
@@ -26,16 +28,6 @@ PathBuffer upload_list(gpu::Device& device, const std::vector<T>& values, const 
     PathBuffer out;
     out.buffer = gpu::make_buffer(device, values, name);
     out.view = gpu::TexelView(device, out.buffer, format);
-    return out;
-}
-
-/// Records padded to whole texels.
-template <std::size_t texels, class Record>
-std::vector<uvec4> padded(const std::vector<Record>& records)
-{
-    static_assert(sizeof(Record) <= 16 * texels);
-    std::vector<uvec4> out(texels * records.size());
-    for (std::size_t i = 0; i < records.size(); ++i) std::memcpy(&out[texels * i], &records[i], sizeof(Record));
     return out;
 }
 
@@ -108,7 +100,10 @@ PathScene make_path_scene(gpu::Device& device, const PosedScene& posed, const Re
     out.node_list = upload_list(device, geometry.bvh.nodes, "BVH nodes");
     out.primitive_list = upload_list(device, geometry.primitives, "primitives");
     out.attributes = upload_list(device, geometry.attributes, "attributes");
-    out.materials = upload_list(device, padded<16>(pack_materials(*posed.scene)), "materials");
+    out.materials = upload_list(device, path_materials(*posed.scene), "materials");
+    std::vector<vec4> albedo;
+    if (out.features.albedo()) albedo = make_albedo_cells(out.features.sheen, settings.threads);
+    out.albedo = upload_list(device, albedo, "directional albedo");
     PathTextures textures;
     if (out.features.textures()) textures = make_path_textures(*posed.scene, required);
     out.textures = upload_list(device, textures.table, "textures");

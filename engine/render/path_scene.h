@@ -24,7 +24,7 @@ struct PathScene {
 
     PathBuffer node_list, primitive_list, attributes, materials;
     PathBuffer textures, texels_8, texels_wide;
-    PathBuffer lights, emitters, sky_cells, sky_map;
+    PathBuffer lights, emitters, sky_cells, sky_map, albedo;
 };
 
 PathScene make_path_scene(gpu::Device& device, const PosedScene& posed, const Requirements& required,

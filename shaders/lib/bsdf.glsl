@@ -1,20 +1,23 @@
 // The BSDFs of docs/shading.md §2 in the local frame of the shading normal: wo.z > 0. The includer defines, as constants,
-// which models can occur (kMetallicRoughness … kRoughDielectric); the others are compiled away.
+// which models and layers can occur (kMetallicRoughness … kDiffuseTransmission); the others are compiled away.
 #ifndef ETALON_LIB_BSDF_GLSL
 #define ETALON_LIB_BSDF_GLSL
 #include "shaders/lib/fresnel.glsl"
 #include "shaders/lib/ggx.glsl"
+#include "shaders/lib/glossy.glsl"
 #include "shaders/lib/sampling.glsl"
 #include "shaders/shared/material.h"
 
+const bool kGlossy = kMetallicRoughness || kSpecularGlossiness;
+
 struct Bsdf {
     uint model;
-    vec3 diffuse;  // c_diff of metallic_roughness; reflectance of lambert and mirror
-    vec3 f0;       // metallic_roughness
+    vec3 diffuse;  // reflectance of lambert and mirror
     float alpha;
     vec3 eta;      // rough_conductor
     vec3 k;
     float excess;  // dielectrics: index of the far side over that of wo's side, minus 1
+    Glossy glossy;  // metallic_roughness, and specular_glossiness in its terms
 };
 
 struct BsdfSample {
@@ -31,24 +34,6 @@ bool is_delta(Bsdf bsdf)
     delta = delta || (kDielectric && bsdf.model == kModelDielectric);
     // Index 1 bends nothing: a rough boundary of it is no boundary (S29).
     return delta || (kRoughDielectric && bsdf.model == kModelRoughDielectric && bsdf.excess == 0.0);
-}
-
-// Chance of the specular lobe of metallic_roughness: the share of its reflectance seen from wo.
-float specular_chance(Bsdf bsdf, float cos_o)
-{
-    float specular = max_component(schlick_fresnel(bsdf.f0, cos_o));
-    float diffuse = max_component(bsdf.diffuse) * (1.0 - specular);
-    return diffuse > 0.0 ? clamp(specular / (specular + diffuse), 0.1, 1.0) : 1.0;
-}
-
-// (SH-14) f n·wi
-vec3 eval_metallic_roughness(Bsdf bsdf, vec3 wo, vec3 wi, vec3 h, out float pdf)
-{
-    vec3 fresnel = schlick_fresnel(bsdf.f0, dot(wo, h));
-    float chance = specular_chance(bsdf, wo.z);
-    pdf = 0.25 * chance * ggx_vndf_over_cos(wo, h, bsdf.alpha) + (1.0 - chance) * cosine_hemisphere_pdf(wi.z);
-    vec3 diffuse = (1.0 - fresnel) * bsdf.diffuse / kPi;
-    return (diffuse + fresnel * (ggx_d(h, bsdf.alpha) * ggx_v_correlated(wi.z, wo.z, bsdf.alpha))) * wi.z;
 }
 
 // (SH-17) f n·wi
@@ -93,12 +78,12 @@ vec3 eval_bsdf(Bsdf bsdf, vec3 wo, vec3 wi, out float pdf)
     vec3 value = vec3(0.0);
     pdf = 0.0;
     vec3 h = half_vector(bsdf, wo, wi);
-    if (kRoughDielectric && bsdf.model == kModelRoughDielectric && bsdf.excess != 0.0) {
+    if (kGlossy && bsdf.model == kModelMetallicRoughness) {
+        value = eval_glossy(bsdf.glossy, wo, wi, pdf);
+    } else if (kRoughDielectric && bsdf.model == kModelRoughDielectric && bsdf.excess != 0.0) {
         value = vec3(eval_rough_dielectric(bsdf, wo, wi, h, pdf));
     } else if (wi.z > 0.0) {
-        if (kMetallicRoughness && bsdf.model == kModelMetallicRoughness) {
-            value = eval_metallic_roughness(bsdf, wo, wi, h, pdf);
-        } else if (kLambert && bsdf.model == kModelLambert) {
+        if (kLambert && bsdf.model == kModelLambert) {
             pdf = cosine_hemisphere_pdf(wi.z);
             value = bsdf.diffuse * pdf;
         } else if (kRoughConductor && bsdf.model == kModelRoughConductor) {
@@ -140,15 +125,19 @@ BsdfSample sample_bsdf(Bsdf bsdf, vec3 wo, vec3 u)
     if (kDielectric && bsdf.model == kModelDielectric) return sample_dielectric(bsdf, wo, u.z);
 
     vec3 h = vec3(0.0, 0.0, 1.0);
-    if (kMetallicRoughness || kRoughConductor || kRoughDielectric) h = sample_ggx_vndf(wo, bsdf.alpha, u.xy);
+    if (kRoughConductor || kRoughDielectric) h = sample_ggx_vndf(wo, bsdf.alpha, u.xy);
     if (kRoughDielectric && bsdf.model == kModelRoughDielectric) {
         if (bsdf.excess == 0.0) return BsdfSample(-wo, vec3(1.0), 0.0);
         return sample_rough_dielectric(bsdf, wo, h, u.z);
     }
 
     bool specular = kRoughConductor && bsdf.model == kModelRoughConductor;
-    if (kMetallicRoughness && bsdf.model == kModelMetallicRoughness) specular = u.z < specular_chance(bsdf, wo.z);
     vec3 wi = specular ? 2.0 * dot(wo, h) * h - wo : sample_cosine_hemisphere(u.xy);
+    if (kGlossy && bsdf.model == kModelMetallicRoughness) {
+        GlossySample drawn = sample_glossy(bsdf.glossy, wo, u);
+        if (kVolume && max_component(drawn.straight) > 0.0) return BsdfSample(drawn.wi, drawn.straight, 0.0);
+        wi = drawn.wi;
+    }
     float pdf;
     vec3 value = eval_bsdf(bsdf, wo, wi, pdf);
     if (!(pdf > 0.0)) return kNoBsdfSample;

@@ -30,6 +30,19 @@ layout(constant_id = kSpecSky) const bool kSky = true;
 layout(constant_id = kSpecSkyMap) const bool kSkyMap = true;
 layout(constant_id = kSpecThinLens) const bool kThinLens = true;
 layout(constant_id = kSpecOrthographic) const bool kOrthographic = true;
+layout(constant_id = kSpecSpecularGlossiness) const bool kSpecularGlossiness = true;
+layout(constant_id = kSpecSpecular) const bool kSpecular = true;
+layout(constant_id = kSpecClearcoat) const bool kClearcoat = true;
+layout(constant_id = kSpecSheen) const bool kSheen = true;
+layout(constant_id = kSpecTransmission) const bool kTransmission = true;
+layout(constant_id = kSpecVolume) const bool kVolume = true;
+layout(constant_id = kSpecIridescence) const bool kIridescence = true;
+layout(constant_id = kSpecAnisotropy) const bool kAnisotropy = true;
+layout(constant_id = kSpecDispersion) const bool kDispersion = true;
+layout(constant_id = kSpecDiffuseTransmission) const bool kDiffuseTransmission = true;
+layout(constant_id = kSpecLayerTextures) const bool kLayerTextures = true;
+const bool kAnyLayer = kSpecular || kClearcoat || kSheen || kTransmission || kIridescence || kAnisotropy || kDiffuseTransmission;
+
 layout(constant_id = kSpecSubgroupLog2) const uint kSubgroupLog2 = 3u;
 
 #endif

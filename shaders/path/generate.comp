@@ -52,5 +52,5 @@ void main()
     vec3 direction;
     camera_ray((vec2(at) + jitter) / vec2(frame.width, frame.height), lens, origin, direction);
     store_path(gl_GlobalInvocationID.x,
-               PathState(origin, kNoPrimitive, direction, in_pass * push.pixel_count + pixel, vec3(1.0), -1.0));
+               PathState(origin, kNoPrimitive, direction, in_pass * push.pixel_count + pixel, vec3(1.0), -1.0, kNoMedium));
 }

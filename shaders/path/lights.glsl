@@ -47,11 +47,22 @@ LightSample sample_punctual(vec3 from, uint pick)
     return LightSample(wi, b.xyz, false, value, 0.0);
 }
 
-// Radiance that an emitter sends from a point of it, on average over its coverage.
-vec3 emitted(uint primitive, uint material, vec3 weights)
+// Radiance that an emitter of normal ng sends towards wo from a point of it, on average over its coverage.
+vec3 emitted(uint primitive, uint flags, vec3 weights, vec3 ng, vec3 wo)
 {
+    uint material = flags & kPrimitiveMaterial;
     vec4 uvs = uvs_at(primitive, weights);
     vec3 value = emission(material, uvs);
+    if (kClearcoat) {
+        // (SH-62) The coat is over the light.
+        bool sphere = kSpheres && (flags & kPrimitiveSphere) != 0u;
+        vec3 vertex_n = vertex_normal(primitive, weights, ng);
+        vec3 n = coat_normal(vertex_n, tangent_at(primitive, weights), material, uvs);
+        float cosine = dot(sphere ? ng : n, wo);
+        // (SH-4) on the side of wo, whichever that is.
+        cosine = cosine * dot(ng, wo) > 0.0 ? cosine : dot(ng, wo);
+        value *= 1.0 - coat_reflectance(material, uvs, cosine);
+    }
     if (kAlpha) value *= coverage_at(primitive, material, weights);
     return value;
 }
@@ -67,6 +78,7 @@ LightSample sample_triangle_light(PrimitiveData data, uint primitive, vec3 from,
     if (!(distance > 0.0)) return kNoLight;
     vec3 wi = towards / distance;
     float cosine = -dot(there.ng, wi);
+    vec3 front = there.ng;
     if ((data.flags & kPrimitiveEmitsBack) != 0u) {
         there.ng = cosine < 0.0 ? -there.ng : there.ng;
         cosine = abs(cosine);
@@ -75,7 +87,7 @@ LightSample sample_triangle_light(PrimitiveData data, uint primitive, vec3 from,
     float pdf = data.light_density * distance / cosine * distance / float(frame.strategy_count);  // (MC-7)
     // The ray ends a little before the light, so that neither it nor a neighbour in its plane is in the way (G24).
     vec3 target = there.position + there.slack * there.ng;
-    return LightSample(wi, target, false, emitted(primitive, data.flags & kPrimitiveMaterial, w) / pdf, pdf);
+    return LightSample(wi, target, false, emitted(primitive, data.flags, w, front, -wi) / pdf, pdf);
 }
 
 // Density of directions towards a sphere light from `from`, and how they are drawn: within its cone from outside.
@@ -101,7 +113,7 @@ LightSample sample_sphere_light(PrimitiveData data, uint primitive, vec3 from, v
     Surface there;
     place_on_sphere(data, from + t * wi, there);
     vec3 target = there.position + there.slack * there.ng;
-    return LightSample(wi, target, false, emitted(primitive, data.flags & kPrimitiveMaterial, vec3(1.0, 0.0, 0.0)) / pdf, pdf);
+    return LightSample(wi, target, false, emitted(primitive, data.flags, vec3(1.0, 0.0, 0.0), there.ng, -wi) / pdf, pdf);
 }
 
 LightSample sample_emitter(vec3 from, uint pick, uint threshold, vec2 u)

@@ -1,4 +1,5 @@
-// Materials as packed by engine/render/material.h: 256 bytes, 16 texels each, of which only those required are read.
+// Materials as packed by engine/render/material.h, 16 texels each, and after them their layers, 36 texels each, of which only
+// those required are read. MaterialRecord::layers is here the texel at which they begin; every material has some.
 #ifndef ETALON_PATH_MATERIAL_GLSL
 #define ETALON_PATH_MATERIAL_GLSL
 #include "shaders/path/textures.glsl"
@@ -11,26 +12,52 @@ const uint kBaseColorSlot = 5u;
 const uint kMetallicRoughnessSlot = 7u;
 const uint kNormalSlot = 9u;
 const uint kEmissiveSlot = 13u;
+const uint kLayersTexel = 15u;  // .y
+// Slot k of a LayerRecord starts at word 29 + 8 k, in the same place within texel 7 + 2 k.
+const uint kSpecularSlot = 7u;
+const uint kSpecularColorSlot = 9u;
+const uint kClearcoatSlot = 11u;
+const uint kClearcoatRoughnessSlot = 13u;
+const uint kClearcoatNormalSlot = 15u;
+const uint kSheenColorSlot = 17u;
+const uint kSheenRoughnessSlot = 19u;
+const uint kTransmissionSlot = 21u;
+const uint kIridescenceSlot = 25u;
+const uint kIridescenceThicknessSlot = 27u;
+const uint kAnisotropySlot = 29u;
+const uint kDiffuseTransmissionSlot = 31u;
+const uint kDiffuseTransmissionColorSlot = 33u;
 
-vec4 load_material(uint material, uint texel)
-{
-    return uintBitsToFloat(imageLoad(materials, int(kMaterialTexels * material + texel)));
-}
+vec4 load_record(uint record, uint texel) { return uintBitsToFloat(imageLoad(materials, int(record + texel))); }
+vec4 load_material(uint material, uint texel) { return load_record(kMaterialTexels * material, texel); }
+uint layers_of(uint material) { return floatBitsToUint(load_material(material, kLayersTexel).y); }
 
-// The texture of a slot at the given coordinates, or `otherwise` where the material has none.
-vec4 sample_slot(uint material, uint slot, vec4 uvs, bool srgb, vec4 otherwise)
+// The texture of a slot of the record at texel `record`, or `otherwise` where it has none.
+vec4 sample_record_slot(uint record, uint slot, vec4 uvs, bool srgb, vec4 otherwise)
 {
-    vec4 second = load_material(material, slot + 1u);
+    vec4 second = load_record(record, slot + 1u);
     uint texture_index = floatBitsToUint(second.w);
-    bool second_set = floatBitsToUint(load_material(material, slot + 2u).x) == 1u;
+    bool second_set = floatBitsToUint(load_record(record, slot + 2u).x) == 1u;
     vec2 uv = second_set ? uvs.zw : uvs.xy;
     if (kTextureTransform) {
-        vec3 u_row = load_material(material, slot).yzw;
+        vec3 u_row = load_record(record, slot).yzw;
         uv = vec2(dot(u_row.xy, uv) + u_row.z, dot(second.xy, uv) + second.z);
     }
     bool present = texture_index != kNoTexture;
     vec4 texel = sample_texture(present ? texture_index : 0u, uv, srgb);
     return present ? texel : otherwise;
+}
+
+vec4 sample_slot(uint material, uint slot, vec4 uvs, bool srgb, vec4 otherwise)
+{
+    return sample_record_slot(kMaterialTexels * material, slot, uvs, srgb, otherwise);
+}
+
+// A texture of the layers at texel `layers`: white where there is none.
+vec4 sample_layer(uint layers, uint slot, vec4 uvs, bool srgb)
+{
+    if (!kLayerTextures) return vec4(1.0);
+    return sample_record_slot(layers, slot, uvs, srgb, vec4(1.0));
 }
 
 // Base colour and alpha: factor, texture and vertex colour.

@@ -15,6 +15,9 @@ layout(set = 0, binding = kBindRadiance, std430) buffer Radiance { vec4 radiance
 layout(set = 0, binding = kBindCounters, std430) buffer Counters { uint counters[]; };
 layout(set = 0, binding = kBindRetries, std430) buffer Retries { uint retries[]; };
 
+// Texels of a path in its queue.
+const uint kPathTexels = kVolume ? 4u : 3u;
+
 // A path on its way: the ray of its current segment, what it carries, and where its light goes.
 struct PathState {
     vec3 origin;
@@ -23,21 +26,29 @@ struct PathState {
     uint slot;        // of the radiance, relative to the pass
     vec3 throughput;
     float pdf;        // density of the direction over solid angle; negative: no light sampling competes with it
+    uint medium;      // material of the body that it is in (SH-59), or kNoMedium
 };
+
+const uint kNoMedium = 0xffffffffu;
 
 PathState load_path(uint index)
 {
-    uvec4 a = imageLoad(paths_in, int(3u * index));
-    uvec4 b = imageLoad(paths_in, int(3u * index + 1u));
-    vec4 c = uintBitsToFloat(imageLoad(paths_in, int(3u * index + 2u)));
-    return PathState(uintBitsToFloat(a.xyz), a.w, uintBitsToFloat(b.xyz), b.w, c.xyz, c.w);
+    int first = int(kPathTexels * index);
+    uvec4 a = imageLoad(paths_in, first);
+    uvec4 b = imageLoad(paths_in, first + 1);
+    vec4 c = uintBitsToFloat(imageLoad(paths_in, first + 2));
+    uint medium = kNoMedium;
+    if (kVolume) medium = imageLoad(paths_in, first + 3).x;
+    return PathState(uintBitsToFloat(a.xyz), a.w, uintBitsToFloat(b.xyz), b.w, c.xyz, c.w, medium);
 }
 
 void store_path(uint index, PathState path)
 {
-    paths_out[3u * index] = vec4(path.origin, uintBitsToFloat(path.self));
-    paths_out[3u * index + 1u] = vec4(path.direction, uintBitsToFloat(path.slot));
-    paths_out[3u * index + 2u] = vec4(path.throughput, path.pdf);
+    uint first = kPathTexels * index;
+    paths_out[first] = vec4(path.origin, uintBitsToFloat(path.self));
+    paths_out[first + 1u] = vec4(path.direction, uintBitsToFloat(path.slot));
+    paths_out[first + 2u] = vec4(path.throughput, path.pdf);
+    if (kVolume) paths_out[first + 3u] = vec4(uintBitsToFloat(path.medium), vec3(0.0));
 }
 
 uint counter_at(uint iteration, uint which) { return kCountersPerIteration * iteration + which; }

@@ -17,6 +17,8 @@ layout(set = 0, binding = kBindEmitters, rgba32ui) readonly uniform uimageBuffer
 layout(set = 0, binding = kBindSkyCells, rgba32ui) readonly uniform uimageBuffer sky_cells;
 layout(set = 0, binding = kBindSkyMap, rgba32ui) readonly uniform uimageBuffer sky_map;
 
+layout(set = 0, binding = kBindAlbedo, rgba32ui) readonly uniform uimageBuffer albedo_cells;
+
 layout(push_constant, scalar) uniform PushBlock { PathPush push; };
 
 struct PrimitiveData {

@@ -5,7 +5,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/path/queues.glsl"
 #include "shaders/path/lights.glsl"
-#include "shaders/lib/bsdf.glsl"
+#include "shaders/path/reflection.glsl"
 
 layout(local_size_x = kPathWorkgroup) in;
 
@@ -35,37 +35,9 @@ vec3 collect_emission(PathState path, Surface s, uint primitive, float t)
     if (!s.front && (s.flags & kPrimitiveEmitsBack) == 0u) return vec3(0.0);
     float weight = 1.0;
     if (path.pdf >= 0.0) weight = power_heuristic(path.pdf, emitter_pdf(primitive, s, path.origin, path.direction, t));
-    return path.throughput * emission(s.material, s.uvs) * weight;
-}
-
-// The BSDF of the surface (docs/shading.md §2); `base` is base colour or reflectance.
-Bsdf make_bsdf(Surface s, vec3 base)
-{
-    vec4 emission_metallic = load_material(s.material, 1u);
-    vec4 eta_roughness = load_material(s.material, 2u);
-    vec4 k_cutoff = load_material(s.material, 3u);
-    vec4 scalars = load_material(s.material, 4u);  // normal scale, occlusion strength, GGX alpha, model
-    Bsdf bsdf;
-    bsdf.model = floatBitsToUint(scalars.w);
-    bsdf.diffuse = base;
-    bsdf.f0 = vec3(0.0);
-    bsdf.alpha = max(scalars.z, 1e-4);
-    bsdf.eta = eta_roughness.xyz;
-    bsdf.k = k_cutoff.xyz;
-    bsdf.excess = s.front ? eta_roughness.x - 1.0 : (1.0 - eta_roughness.x) / eta_roughness.x;
-    if (kMetallicRoughness && bsdf.model == kModelMetallicRoughness) {
-        float metallic = emission_metallic.w;
-        float roughness = eta_roughness.w;
-        if (kMetallicRoughnessTexture) {
-            vec4 texel = sample_slot(s.material, kMetallicRoughnessSlot, s.uvs, false, vec4(1.0));
-            metallic *= texel.z;
-            roughness *= texel.y;
-        }
-        bsdf.diffuse = base * (1.0 - metallic);
-        bsdf.f0 = 0.04 + metallic * (base - 0.04);
-        bsdf.alpha = max(roughness * roughness, 1e-3);
-    }
-    return bsdf;
+    vec3 value = emission(s.material, s.uvs);
+    if (kClearcoat) value *= 1.0 - coat_reflectance(s.material, s.uvs, dot(s.coat_n, path.direction));
+    return path.throughput * value * weight;
 }
 
 // The value that a reflecting direction must not have through the surface, or a transmitted one in front of it.
@@ -93,10 +65,11 @@ void main()
     float t;
     Surface s = make_surface(hit ? primitive : 0u, path.origin, path.direction, t);
     vec4 base = base_color(s.material, s.uvs, s.color);
-    Bsdf bsdf = make_bsdf(s, base.xyz);
-    Frame local = make_frame(s.n);
+    Frame local = shading_frame(s);
     vec3 wo_local = to_local(local, -path.direction);
     wo_local.z = max(wo_local.z, 1e-7);
+    Bsdf bsdf = make_bsdf(s, base.xyz, local, -path.direction, wo_local.z);
+    if (kVolume) path.throughput *= passed_by_medium(path.medium, hit ? t : kMaxFloat);
 
     bool unlit = kUnlit && bsdf.model == kModelUnlit;
     bool black = !s.front && (material_flags(s.material) & kMaterialBlackBack) != 0u;
@@ -118,12 +91,16 @@ void main()
         float pdf;
         vec3 value = eval_bsdf(bsdf, wo_local, wi_local, pdf);
         value *= path.throughput * light.value * (light.pdf > 0.0 ? power_heuristic(light.pdf, pdf) : 1.0);
-        casts = max_component(value) > 0.0 && is_consistent(s, light.wi, wi_local.z);
+        casts = max_component(value) > 0.0 && (is_consistent(s, light.wi, wi_local.z) || has_coat(bsdf));
         shadow.origin = leave(s, light.wi);
         shadow.self = self_of(s, primitive, light.wi);
         // The whole way to the light is 1: the ray stops just short of it.
         shadow.direction = light.infinite ? light.wi : light.target - shadow.origin;
         shadow.pdf = light.infinite ? kMaxFloat : 1.0 - 1e-6;
+        if (kVolume) {
+            float way = light.infinite ? kMaxFloat : robust_length(shadow.direction);
+            value *= passed_by_medium(medium_towards(s, light.wi, path.medium), way);
+        }
         shadow.throughput = value;
     }
     uint place = append(counter_at(push.iteration, kCountShadows), casts);
@@ -145,7 +122,8 @@ void main()
         next.origin = leave(s, next.direction);
         next.self = self_of(s, primitive, next.direction);
         float carried = max_component(next.throughput);
-        goes_on = carried > 0.0 && is_consistent(s, next.direction, drawn.wi.z);
+        if (kVolume) next.medium = medium_towards(s, next.direction, path.medium);
+        goes_on = carried > 0.0 && (is_consistent(s, next.direction, drawn.wi.z) || has_coat(bsdf));
         if (frame.roulette != 0u && push.iteration >= kRouletteAfter && !last) {
             float survival = clamp(carried, 0.05, 1.0);  // (MC-4)
             goes_on = goes_on && unit_float(bits.w) < survival;

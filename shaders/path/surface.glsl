@@ -16,6 +16,8 @@ struct Surface {
     bool front;     // wo is on the side that the geometric normal points to
     uint material;
     uint flags;     // of the primitive
+    vec3 coat_n;    // normal of a clearcoat (SH-62), on wo's side
+    vec4 tangent;   // as interpolated, w the bitangent's sign; zero: none
     vec4 uvs;
     vec4 color;
     float light_density;
@@ -41,26 +43,56 @@ void place_on_sphere(PrimitiveData data, vec3 point, inout Surface s)
     s.slack = kOffset * (max_component(abs(data.p0)) + data.p1.x);
 }
 
-// (SH-2) The shading normal of the front.
-vec3 shading_normal(uint primitive, vec3 w, vec3 ng, uint material, vec4 uvs)
+// (SH-2) The interpolated normal of the front.
+vec3 vertex_normal(uint primitive, vec3 w, vec3 ng)
 {
-    vec3 n = ng;
-    if (kNormals) {
-        n = robust_normalize(interpolate(primitive, 0u, w).xyz);
-        n = n == vec3(0.0) ? ng : n;
-    }
-    if (kNormalTexture && kTangents) {
-        vec4 tangent = interpolate(primitive, kTangentAt, w);
-        vec3 t = robust_normalize(tangent.xyz);
-        vec3 b = cross(n, t) * (tangent.w < 0.0 ? -1.0 : 1.0);
-        vec4 none = vec4(0.5, 0.5, 1.0, 1.0);
-        vec3 texel = 2.0 * sample_slot(material, kNormalSlot, uvs, false, none).xyz - 1.0;
-        float scale = load_material(material, 4u).x;
-        vec3 mapped = robust_normalize(scale * (texel.x * t + texel.y * b) + texel.z * n);
-        bool usable = t != vec3(0.0) && mapped != vec3(0.0);
-        n = usable ? mapped : n;
-    }
-    return n;
+    if (!kNormals) return ng;
+    vec3 n = robust_normalize(interpolate(primitive, 0u, w).xyz);
+    return n == vec3(0.0) ? ng : n;
+}
+
+vec4 tangent_at(uint primitive, vec3 w)
+{
+    vec4 tangent = vec4(0.0);
+    if (kTangents) tangent = interpolate(primitive, kTangentAt, w);
+    return tangent;
+}
+
+// (SH-2) n as the normal map in a slot of a record turns it.
+vec3 mapped_normal(vec3 n, vec4 tangent, uint record, uint slot, float scale, vec4 uvs)
+{
+    vec3 t = robust_normalize(tangent.xyz);
+    vec3 b = cross(n, t) * (tangent.w < 0.0 ? -1.0 : 1.0);
+    vec4 none = vec4(0.5, 0.5, 1.0, 1.0);
+    vec3 texel = 2.0 * sample_record_slot(record, slot, uvs, false, none).xyz - 1.0;
+    vec3 mapped = robust_normalize(scale * (texel.x * t + texel.y * b) + texel.z * n);
+    bool usable = t != vec3(0.0) && mapped != vec3(0.0);
+    return usable ? mapped : n;
+}
+
+// (SH-2) The shading normal of the front.
+vec3 shading_normal(vec3 n, vec4 tangent, uint material, vec4 uvs)
+{
+    if (!kNormalTexture || !kTangents) return n;
+    float scale = load_material(material, 4u).x;
+    return mapped_normal(n, tangent, kMaterialTexels * material, kNormalSlot, scale, uvs);
+}
+
+// (SH-62) The coat's: with its own map, else the interpolated one.
+vec3 coat_normal(vec3 n, vec4 tangent, uint material, vec4 uvs)
+{
+    if (!kClearcoat || !kLayerTextures || !kTangents) return n;
+    uint layers = layers_of(material);
+    return mapped_normal(n, tangent, layers, kClearcoatNormalSlot, load_record(layers, 5u).x, uvs);
+}
+
+// (SH-62) K, seen from a direction at this cosine to the coat's normal.
+float coat_reflectance(uint material, vec4 uvs, float cosine)
+{
+    uint layers = layers_of(material);
+    float x = clamp(1.0 - abs(cosine), 0.0, 1.0);
+    float coat = load_record(layers, 4u).z * sample_layer(layers, kClearcoatSlot, uvs, false).x;
+    return coat * (0.04 + 0.96 * ((x * x) * (x * x) * x));
 }
 
 // The surface where a ray met `primitive`; `t` receives how far that is.
@@ -81,14 +113,21 @@ Surface make_surface(uint primitive, vec3 origin, vec3 direction, out float t)
     if (sphere) place_on_sphere(data, origin + t * direction, s);
     s.uvs = uvs_at(primitive, w);
     s.color = color_at(primitive, w);
-    s.n = shading_normal(primitive, w, s.ng, s.material, s.uvs);
+    s.tangent = tangent_at(primitive, w);
+    if (sphere) s.tangent = vec4(0.0);
+    vec3 n = vertex_normal(primitive, w, s.ng);
+    s.n = shading_normal(n, s.tangent, s.material, s.uvs);
+    s.coat_n = coat_normal(n, s.tangent, s.material, s.uvs);
     if (sphere) s.n = s.ng;
+    if (sphere) s.coat_n = s.ng;
     s.front = dot(s.ng, wo) > 0.0;
     if (!s.front) {
         s.ng = -s.ng;
         s.n = -s.n;
+        s.coat_n = -s.coat_n;
     }
     if (dot(s.n, wo) <= 0.0) s.n = s.ng;  // (SH-4)
+    if (dot(s.coat_n, wo) <= 0.0) s.coat_n = s.ng;
     return s;
 }
 

@@ -18,8 +18,8 @@ uint alpha_key_of(uint slot)
 // Ray `index` of the queue, and how far it goes.
 Ray load_ray(uint index, out float t_max)
 {
-    uvec4 a = kShadow ? imageLoad(shadows_in, int(3u * index)) : imageLoad(paths_in, int(3u * index));
-    uvec4 b = kShadow ? imageLoad(shadows_in, int(3u * index + 1u)) : imageLoad(paths_in, int(3u * index + 1u));
+    uvec4 a = kShadow ? imageLoad(shadows_in, int(3u * index)) : imageLoad(paths_in, int(kPathTexels * index));
+    uvec4 b = kShadow ? imageLoad(shadows_in, int(3u * index + 1u)) : imageLoad(paths_in, int(kPathTexels * index + 1u));
     t_max = kShadow ? uintBitsToFloat(b.w) : kMaxFloat;
     uint key = 0u;
     if (kAlpha) key = alpha_key_of(kShadow ? imageLoad(shadows_in, int(3u * index + 2u)).w : b.w);

@@ -11,7 +11,7 @@ ETALON_CONSTANT uint kBindNodes = 1u;       // BvhNode: 4 texels, one a child
 ETALON_CONSTANT uint kBindPrimitives = 2u;  // 3 texels: (p0, flags) (p1, light density) (p2, object); see below
 ETALON_CONSTANT uint kBindAttributes =
     3u;                                    // per primitive: normals, uvs, tangents, colours, 3 texels each, if required
-ETALON_CONSTANT uint kBindMaterials = 4u;  // MaterialRecord in 16 texels
+ETALON_CONSTANT uint kBindMaterials = 4u;  // MaterialRecord in 16 texels each, then LayerRecord in 36
 ETALON_CONSTANT uint kBindTextures = 5u;   // (first texel, width | height << 16, flags, 0)
 ETALON_CONSTANT uint kBindTexels8 = 6u;    // RGBA, 8 bits each
 ETALON_CONSTANT uint kBindTexelsWide = 7u;   // RGBA, floats
@@ -33,6 +33,7 @@ ETALON_CONSTANT uint kBindRetries = 22u;     // indices of rays for the exact ke
 ETALON_CONSTANT uint kBindMean = 23u;        // per pixel: mean rgb, alpha
 ETALON_CONSTANT uint kBindM2 = 24u;          // per pixel: sums of squared deviations, (nonfinite | truncated << 16)
 ETALON_CONSTANT uint kBindAovs = 25u;        // 4 vec4 a pixel
+ETALON_CONSTANT uint kBindAlbedo = 26u;      // tables of shaders/shared/albedo.h
 
 // Specialization constants.
 ETALON_CONSTANT uint kSpecTriangles = 0u;
@@ -70,6 +71,18 @@ ETALON_CONSTANT uint kSpecSubgroupLog2 = 31u;
 ETALON_CONSTANT uint kSpecFewAtNodes = 32u;  // persistent trace kernel: its loops end when this few lanes are in them
 ETALON_CONSTANT uint kSpecFewAtLeaves = 33u;
 ETALON_CONSTANT uint kSpecRefill = 34u;  // lanes that must be free before new rays are taken
+
+ETALON_CONSTANT uint kSpecSpecularGlossiness = 35u;
+ETALON_CONSTANT uint kSpecSpecular = 36u;
+ETALON_CONSTANT uint kSpecClearcoat = 37u;
+ETALON_CONSTANT uint kSpecSheen = 38u;
+ETALON_CONSTANT uint kSpecTransmission = 39u;
+ETALON_CONSTANT uint kSpecVolume = 40u;
+ETALON_CONSTANT uint kSpecIridescence = 41u;
+ETALON_CONSTANT uint kSpecAnisotropy = 42u;
+ETALON_CONSTANT uint kSpecDispersion = 43u;
+ETALON_CONSTANT uint kSpecDiffuseTransmission = 44u;
+ETALON_CONSTANT uint kSpecLayerTextures = 45u;
 
 ETALON_CONSTANT uint kPathWorkgroup = 64u;
 

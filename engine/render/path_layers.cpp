@@ -1,0 +1,37 @@
+#include "engine/render/path_layers.h"
+
+#include "engine/render/material.h"
+
+namespace etalon {
+namespace {
+
+constexpr std::size_t kMaterialTexels = 16;
+constexpr std::size_t kLayerTexels = 36;
+
+}  // namespace
+
+bool layered(const Material& material)
+{
+    return material.layers.has_value() &&
+           (material.model == BsdfModel::metallic_roughness || material.model == BsdfModel::specular_glossiness);
+}
+
+std::vector<uvec4> path_materials(const Scene& scene)
+{
+    std::vector<shared::MaterialRecord> materials = pack_materials(scene);
+    Scene bare;
+    bare.materials.emplace_back().layers = MaterialLayers{};
+    std::vector<shared::LayerRecord> layers = pack_layers(bare);
+    const std::vector<shared::LayerRecord> own = pack_layers(scene);
+    layers.insert(layers.end(), own.begin(), own.end());
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+        const std::size_t index = layered(scene.materials[i]) ? 1 + materials[i].layers : 0;
+        materials[i].layers = static_cast<shared::uint>(kMaterialTexels * materials.size() + kLayerTexels * index);
+    }
+    std::vector<uvec4> out = padded<kMaterialTexels>(materials);
+    const std::vector<uvec4> tail = padded<kLayerTexels>(layers);
+    out.insert(out.end(), tail.begin(), tail.end());
+    return out;
+}
+
+}  // namespace etalon
