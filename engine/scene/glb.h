@@ -2,7 +2,9 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace etalon {
 
@@ -10,6 +12,7 @@ namespace etalon {
 struct GltfParts {
     std::string_view json;
     std::optional<std::span<const std::byte>> binary;  ///< GLB's BIN chunk
+    std::vector<std::string> warnings{};               ///< rules of the container that were broken without harm
 };
 
 /// Tells `.glb` from `.gltf` by the magic and walks the chunks. Lengths are checked in 64 bits against what is there.

@@ -98,6 +98,20 @@ dmat3 texture_transform(const Value& extension, const std::string& pointer)
     return dmat3(dvec3(c * scale.x, -s * scale.x, 0), dvec3(s * scale.y, c * scale.y, 0), dvec3(offset, 1));
 }
 
+// Why a texture without a source of its own shows nothing.
+std::string why_unread(const tinygltf::Texture& texture)
+{
+    struct Row {
+        const char* extension;
+        const char* format;
+    };
+    for (const Row& row :
+         {Row{"KHR_texture_basisu", "KTX 2"}, Row{"EXT_texture_avif", "AVIF"}, Row{"MSFT_texture_dds", "DDS"}})
+        if (member(texture.extensions, row.extension) != nullptr)
+            return fmt::format("it has only a {} image ({}), which Etalon does not read", row.format, row.extension);
+    return "no image in a format that is read";
+}
+
 }  // namespace
 
 Textures::Textures(const Source& source, Scene& scene)
@@ -146,7 +160,7 @@ Index Textures::texture(std::size_t index)
     if (const Value* webp = member(in.extensions, "EXT_texture_webp"))
         source = static_cast<int>(number(*webp, "source", pointer + "/extensions/EXT_texture_webp", source, 0, 1e9));
     if (source < 0) {
-        scene_.warnings.push_back(pointer + ": no image in a format that is read: the texture is ignored");
+        scene_.warnings.push_back(fmt::format("{}: {}: the texture is ignored", pointer, why_unread(in)));
         return kNone;
     }
     Texture out;
@@ -177,7 +191,7 @@ void Textures::decode_images()
             if (in.bytes && in.bytes->empty())
                 throw Error(Blame::input, "its buffer has no data in this file [BUFFER_MISSING_GLB_DATA]");
             scene_.images[i] = in.bytes ? decode_texels(*in.bytes, in.name)
-                                        : decode_texels(read_uri(in.uri, source_.folder, kMaxImageBytes), in.name);
+                                        : decode_texels(read_uri(in.source(), source_.folder, kMaxImageBytes), in.name);
         } catch (Error& error) {
             throw error.at(fmt::format("/images/{}", used_images_[i]));
         }

@@ -64,8 +64,6 @@ class Counter : public nlohmann::json_sax<json> {
 
 void check_json(std::string_view text, const Limits& limits)
 {
-    if (text.size() > limits.json_bytes)
-        throw Error(Blame::input, fmt::format("{} bytes of JSON; the limit is {}", text.size(), limits.json_bytes));
     Counter counter(limits);
     json::sax_parse(text.begin(), text.end(), &counter);
 }

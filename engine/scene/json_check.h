@@ -5,8 +5,8 @@
 
 namespace etalon {
 
-/// Reads JSON text through without building or recursing. Error(input) where it is no JSON, or longer, deeper or richer
-/// in values than the limits.
+/// Reads JSON text through without building or recursing. Error(input) where it is no JSON, or deeper or richer in
+/// values than the limits.
 void check_json(std::string_view text, const Limits& limits);
 
 }  // namespace etalon

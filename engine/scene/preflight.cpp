@@ -97,7 +97,11 @@ CheckedGltf preflight(std::span<const std::byte> bytes, const std::filesystem::p
 {
     using namespace document;
     const GltfParts parts = split_gltf(bytes);
-    json document = parse(parts.json, limits);
+    if (parts.json.size() > limits.json_bytes)
+        throw Error(Blame::input,
+                    fmt::format("{} bytes of JSON; the limit is {}", parts.json.size(), limits.json_bytes));
+    const LiftedText text(parts.json);
+    json document = parse(text, limits);
     if (!document.is_object()) throw fault("", "the document is no JSON object [TYPE_MISMATCH]");
     check_version(document);
     check_extensions(document);
@@ -106,12 +110,13 @@ CheckedGltf preflight(std::span<const std::byte> bytes, const std::filesystem::p
     check_nodes(document, limits);
 
     CheckedGltf out;
-    out.buffers = read_buffers(document, parts, folder, limits);
+    out.warnings = parts.warnings;
+    out.buffers = read_buffers(document, parts, text, folder, limits);
     std::vector<View> views = read_views(document, out.buffers);
     check_compressed_views(document, views, out.buffers);
     check_accessors(document, views, out.buffers, limits);
     check_counts(document, limits);
-    out.images = read_images(document, views, out.buffers);
+    out.images = read_images(document, text, views, out.buffers);
     document.erase("buffers");
     document.erase("images");
     out.json = document.dump();

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/base/limits.h"
@@ -21,8 +22,10 @@ struct GltfBuffer {
 /// Where an image is: in a buffer or behind a URI that has not been followed yet.
 struct GltfImage {
     std::string name;                                 ///< for messages
-    std::string uri;                                  ///< when there are no bytes
+    std::string uri;                                  ///< when there are no bytes …
+    std::string_view long_uri;                        ///< … or this view of the file that was checked
     std::optional<std::span<const std::byte>> bytes;  ///< empty when its buffer has no data in the file
+    std::string_view source() const { return long_uri.empty() ? std::string_view(uri) : long_uri; }
 };
 
 /// A glTF file whose every index, range and offset has been checked, ready for a parser that trusts them.
@@ -30,6 +33,7 @@ struct CheckedGltf {
     std::string json;  ///< the document without `buffers` and `images`
     std::vector<GltfBuffer> buffers;
     std::vector<GltfImage> images;
+    std::vector<std::string> warnings;  ///< rules that were broken without harm, with the validator's code
 };
 
 /// Looks at a .gltf or .glb file before anything trusts it: GLB chunks, JSON depth and counts, version, required

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "engine/scene/preflight_parts.h"
 
 namespace etalon::document {
@@ -13,7 +15,7 @@ Unsigned saturating_product(Unsigned a, Unsigned b)
 }
 
 // Bytes of one component, or 0 for a type that glTF does not know.
-Unsigned component_size(Unsigned type)
+Unsigned component_size(Unsigned type, bool has_doubles = false)
 {
     switch (type) {
         case 5120:
@@ -25,6 +27,8 @@ Unsigned component_size(Unsigned type)
         case 5125:
         case 5126:
             return 4;
+        case 5130:
+            return has_doubles ? 8 : 0;
         default:
             return 0;
     }
@@ -103,7 +107,13 @@ void check_sparse(const json& sparse, const std::string& pointer, Unsigned base_
                views);
 }
 
-// Elements of `bytes` in all for which the file holds no data, so that their number costs it nothing.
+bool uses_extension(const json& document, std::string_view name)
+{
+    const json* used = member(document, "extensionsUsed");
+    return used != nullptr && used->is_array() && std::find(used->begin(), used->end(), name) != used->end();
+}
+
+// Elements for which the file holds no data, so that their number costs it nothing.
 class DatalessElements {
  public:
     explicit DatalessElements(const Limits& limits) : limit_(limits.zero_filled_bytes) {}
@@ -125,6 +135,7 @@ void check_accessors(const json& document, std::span<const View> views, std::spa
                      const Limits& limits)
 {
     const std::vector<bool> is_decoded = check_compressed_meshes(document, views, buffers, limits);
+    const bool has_doubles = uses_extension(document, "KHR_accessor_float64");
     DatalessElements dataless(limits);
     std::size_t i = 0;
     for (const json& accessor : collection(document, "/accessors")) {
@@ -133,7 +144,8 @@ void check_accessors(const json& document, std::span<const View> views, std::spa
         const Unsigned component_type = unsigned_at(accessor, "componentType", pointer);
         const json* type = member(accessor, "type");
         if (type == nullptr || !type->is_string()) throw fault(pointer, "type is missing [UNDEFINED_PROPERTY]");
-        const Unsigned size = element_size(type->get_ref<const std::string&>(), component_size(component_type));
+        const Unsigned size =
+            element_size(type->get_ref<const std::string&>(), component_size(component_type, has_doubles));
         if (size == 0)
             throw fault(pointer, fmt::format("type {} of component type {} does not exist [VALUE_NOT_IN_LIST]",
                                              brief(*type), component_type));

@@ -7,12 +7,12 @@ namespace etalon::document {
 
 namespace {
 
-std::vector<std::byte> read_resource(const json& uri, const std::string& pointer, const std::filesystem::path& folder,
-                                     std::size_t wanted, std::size_t limit)
+std::vector<std::byte> read_resource(const json& uri, const LiftedText& text, const std::string& pointer,
+                                     const std::filesystem::path& folder, std::size_t wanted, std::size_t limit)
 {
     if (!uri.is_string()) throw fault(pointer, fmt::format("{} is no URI [TYPE_MISMATCH]", brief(uri)));
     try {
-        return read_uri(uri.get_ref<const std::string&>(), folder, limit, wanted);
+        return read_uri(text.uri(uri.get_ref<const std::string&>()), folder, limit, wanted);
     } catch (Error& error) {
         throw error.at(pointer);
     }
@@ -20,8 +20,8 @@ std::vector<std::byte> read_resource(const json& uri, const std::string& pointer
 
 }  // namespace
 
-std::vector<GltfBuffer> read_buffers(const json& document, const GltfParts& parts, const std::filesystem::path& folder,
-                                     const Limits& limits)
+std::vector<GltfBuffer> read_buffers(const json& document, const GltfParts& parts, const LiftedText& text,
+                                     const std::filesystem::path& folder, const Limits& limits)
 {
     std::vector<GltfBuffer> out;
     Unsigned read = 0;  // of all buffers: one file may be named many times
@@ -31,7 +31,7 @@ std::vector<GltfBuffer> read_buffers(const json& document, const GltfParts& part
         const json* uri = member(buffer, "uri");
         const bool has_data = uri != nullptr || (out.empty() && parts.binary);
         if (uri != nullptr) {
-            one.owned = read_resource(*uri, pointer + "/uri", folder, one.declared, limits.resource_bytes - read);
+            one.owned = read_resource(*uri, text, pointer + "/uri", folder, one.declared, limits.resource_bytes - read);
             read += one.owned.size();
             one.bytes = one.owned;
         } else if (has_data) {
@@ -76,7 +76,7 @@ std::span<const std::byte> bytes_of(const View& view, std::span<const GltfBuffer
     return data.empty() ? data : data.subspan(view.offset, view.length);
 }
 
-std::vector<GltfImage> read_images(const json& document, std::span<const View> views,
+std::vector<GltfImage> read_images(const json& document, const LiftedText& text, std::span<const View> views,
                                    std::span<const GltfBuffer> buffers)
 {
     std::vector<GltfImage> out;
@@ -94,10 +94,11 @@ std::vector<GltfImage> read_images(const json& document, std::span<const View> v
             one.bytes = bytes_of(from, buffers);  // without data: empty, and an error only for who needs it
         } else if (uri->is_string()) {
             one.uri = *uri;
+            if (const std::string_view whole = text.uri(one.uri); whole != one.uri) one.long_uri = whole;
         } else {
             throw fault(pointer + "/uri", fmt::format("{} is no URI [TYPE_MISMATCH]", brief(*uri)));
         }
-        if (one.name.empty()) one.name = one.bytes ? pointer : one.uri.substr(0, 80);
+        if (one.name.empty()) one.name = one.bytes ? pointer : std::string(one.source().substr(0, 80));
         out.push_back(std::move(one));
     }
     return out;

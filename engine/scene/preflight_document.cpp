@@ -63,12 +63,11 @@ void refuse_kind(const json& value, const Place& place, std::string_view expecte
     throw fault(place.pointer(), fmt::format("{} instead of {} [TYPE_MISMATCH]", brief(value), expected));
 }
 
-json parse(std::string_view text, const Limits& limits)
+json parse(const LiftedText& text, const Limits& limits)
 {
-    while (text.ends_with('\0')) text.remove_suffix(1);  // some writers pad the JSON chunk with zeros instead of spaces
     // Two passes, not one with a callback: nlohmann's callback parser takes time quadratic in the elements of an array.
-    check_json(text, limits);
-    json out = json::parse(text.begin(), text.end());
+    check_json(text.text(), limits);
+    json out = json::parse(text.text().begin(), text.text().end());
     make_whole_numbers_integers(out);
     return out;
 }

@@ -8,6 +8,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/limits.h"
+#include "engine/scene/data_uris.h"
 
 namespace etalon::document {
 
@@ -30,7 +31,7 @@ std::string brief(const json& value);
 
 /// The text as a document whose whole numbers are integers however they were written ("3.0"). Checked by check_json
 /// first, so that nothing here recurses deeper than limits.json_depth.
-json parse(std::string_view text, const Limits& limits);
+json parse(const LiftedText& text, const Limits& limits);
 
 /// The array of objects at `path` ("/nodes"); an empty one when absent.
 const json& collection(const json& document, std::string_view path);

@@ -28,8 +28,8 @@ struct View {
 };
 
 /// Reads the buffers: those in the file, in data URIs, and beneath `folder`. preflight_buffers.cpp
-std::vector<GltfBuffer> read_buffers(const json& document, const GltfParts& parts, const std::filesystem::path& folder,
-                                     const Limits& limits);
+std::vector<GltfBuffer> read_buffers(const json& document, const GltfParts& parts, const LiftedText& text,
+                                     const std::filesystem::path& folder, const Limits& limits);
 std::vector<View> read_views(const json& document, std::span<const GltfBuffer> buffers);
 /// The bytes of the file that `view` shows; empty when its buffer has no data.
 std::span<const std::byte> bytes_of(const View& view, std::span<const GltfBuffer> buffers);
@@ -45,7 +45,7 @@ void check_compressed_views(const json& document, std::vector<View>& views, std:
 std::vector<bool> check_compressed_meshes(const json& document, std::span<const View> views,
                                           std::span<const GltfBuffer> buffers, const Limits& limits);
 
-std::vector<GltfImage> read_images(const json& document, std::span<const View> views,
+std::vector<GltfImage> read_images(const json& document, const LiftedText& text, std::span<const View> views,
                                    std::span<const GltfBuffer> buffers);
 
 }  // namespace etalon::document
