@@ -170,9 +170,21 @@ TextureSet::TextureSet(const Scene& scene, const std::vector<bool>& used, bool m
     for (const Material& material : scene.materials) {
         add(material.base_color_texture, Coding::srgb);
         add(material.emissive_texture, Coding::srgb);
-        add(material.metallic_roughness_texture, Coding::linear);
+        add(material.metallic_roughness_texture,
+            material.model == BsdfModel::specular_glossiness ? Coding::srgb : Coding::linear);
         add(material.normal_texture, Coding::linear);
         add(material.occlusion_texture, Coding::linear);
+        if (!material.layers) continue;
+        const MaterialLayers& layers = *material.layers;
+        for (const TextureUse* use :
+             {&layers.specular_color_texture, &layers.sheen_color_texture, &layers.diffuse_transmission_color_texture})
+            add(*use, Coding::srgb);
+        for (const TextureUse* use :
+             {&layers.specular_texture, &layers.clearcoat_texture, &layers.clearcoat_roughness_texture,
+              &layers.clearcoat_normal_texture, &layers.sheen_roughness_texture, &layers.transmission_texture,
+              &layers.thickness_texture, &layers.iridescence_texture, &layers.iridescence_thickness_texture,
+              &layers.anisotropy_texture, &layers.diffuse_transmission_texture})
+            add(*use, Coding::linear);
     }
 }
 
