@@ -23,26 +23,80 @@ Film by_reference(const PosedScene& posed, RenderSettings settings)
     return reference::render_raster(posed, require(posed, settings), settings, {});
 }
 
+constexpr double kSharpest = 1e-3;  // the model's own bound: a texture may go down to it
+
+double alpha_of(double roughness, const TextureUse& texture)
+{
+    return texture.present() ? kSharpest : std::max(roughness * roughness, kSharpest);
+}
+
+double sharpest_layer(const MaterialLayers& layers)
+{
+    double alpha = 1;
+    if (layers.clearcoat > 0) alpha = alpha_of(layers.clearcoat_roughness, layers.clearcoat_roughness_texture);
+    // Sheen: D goes with sin^(1/alpha), no steeper than GGX of that alpha.
+    if (layers.sheen_color != dvec3(0)) alpha = std::min(alpha, std::pow(std::max(layers.sheen_roughness, 0.07), 2));
+    if (layers.sheen_roughness_texture.present()) alpha = std::min(alpha, 0.07 * 0.07);
+    return alpha;
+}
+
+bool is_gltf_model(const Material& m)
+{
+    return m.model == BsdfModel::metallic_roughness || m.model == BsdfModel::specular_glossiness;
+}
+
 double sharpest_alpha(const Material& m)
 {
     switch (m.model) {
         case BsdfModel::metallic_roughness:
-            // A texture may go down to the model's own bound.
-            return m.metallic_roughness_texture.present() ? 1e-3 : std::max(m.roughness * m.roughness, 1e-3);
+        case BsdfModel::specular_glossiness:
+            return std::min(alpha_of(m.roughness, m.metallic_roughness_texture),
+                            m.layers ? sharpest_layer(*m.layers) : 1);
         case BsdfModel::rough_conductor:
         case BsdfModel::rough_dielectric:
-            return std::max(m.ggx_alpha, 1e-3);
+            return std::max(m.ggx_alpha, kSharpest);
         case BsdfModel::dielectric:
-            return 1e-3;
+            return kSharpest;
         default:
             return 1;
     }
 }
 
+/// Both sides know E to 3e-4 (SH-53), and E ≥ 1 - 0.7 α; M = 1 + F (1 - E)/E is off by F/E² of that.
+double share_error(const Material& m)
+{
+    if (!is_gltf_model(m)) return 0;
+    const bool metal = m.metallic > 0 || m.model == BsdfModel::specular_glossiness || m.layers;
+    const double f = metal ? 1 : 0.04;
+    const double e = 1 - 0.7 * (m.metallic_roughness_texture.present() ? 1 : std::min(m.roughness * m.roughness, 1.0));
+    double error = 6e-4 * f / (e * (e + f * (1 - e)));
+    // E_s, to 10⁻³ on one side and 5·10⁻⁴ on the other: S = 1 - E_s.
+    if (m.layers && m.layers->sheen_color != dvec3(0)) error += 1.5e-3;
+    return error;
+}
+
 bool is_textured(const Material& m)
 {
-    return m.base_color_texture.present() || m.metallic_roughness_texture.present() || m.normal_texture.present() ||
-           m.occlusion_texture.present() || m.emissive_texture.present();
+    if (m.base_color_texture.present() || m.metallic_roughness_texture.present() || m.normal_texture.present() ||
+        m.occlusion_texture.present() || m.emissive_texture.present())
+        return true;
+    if (!m.layers) return false;
+    const MaterialLayers& l = *m.layers;
+    const std::array<const TextureUse*, 14> all{&l.specular_texture,
+                                                &l.specular_color_texture,
+                                                &l.clearcoat_texture,
+                                                &l.clearcoat_roughness_texture,
+                                                &l.clearcoat_normal_texture,
+                                                &l.sheen_color_texture,
+                                                &l.sheen_roughness_texture,
+                                                &l.transmission_texture,
+                                                &l.thickness_texture,
+                                                &l.iridescence_texture,
+                                                &l.iridescence_thickness_texture,
+                                                &l.anisotropy_texture,
+                                                &l.diffuse_transmission_texture,
+                                                &l.diffuse_transmission_color_texture};
+    return std::any_of(all.begin(), all.end(), [](const TextureUse* use) { return use->present(); });
 }
 
 vec4 value(const Film& film, std::size_t pixel)
@@ -110,15 +164,21 @@ dvec3 mean_of(const Film& film)
 
 RasterBudget raster_budget(const PosedScene& posed, const RenderSettings& settings, const RasterPrecision& precision)
 {
-    double alpha = 1;
-    bool textured = false;
+    double alpha = 1, shares = 0;
+    bool textured = false, transmits = false;
+    const bool lit = !posed.lights.empty() && settings.shading != Shading::blinn_phong;
     const auto add = [&](const Material& material) {
         alpha = std::min(alpha, sharpest_alpha(material));
+        if (lit) shares = std::max(shares, share_error(material));
         textured = textured || is_textured(material);
+        transmits = transmits || (material.layers && material.layers->transmission > 0);
     };
     for (const Draw& draw : posed.draws) add(posed.material(draw));
     for (const PosedSphere& sphere : posed.spheres) add(posed.scene->materials[sphere.material]);
-    RasterBudget budget{.relative = kRounding + 2 * kTurn / alpha};
+    RasterBudget budget{.relative = kRounding + 2 * kTurn / alpha + shares};
+    // Where a transmitting surface looks behind: a film position off by ten roundings of its size, times a difference
+    // of neighbours of at most 1.
+    if (transmits) budget.absolute += 10 * std::exp2(-24.0) * std::max(posed.view.width, posed.view.height);
     if (textured) budget.absolute += 2 * std::exp2(-1.0 - double(precision.subtexel_bits));
     if (textured && settings.mipmaps) budget.absolute += std::exp2(-1.0 - double(precision.mip_bits));
     return budget;
