@@ -14,8 +14,8 @@ double ggx_albedo(double cosine, double alpha);
 /// 0.07 … 1. By quadrature; error under 5·10⁻⁴ where cosine ≥ 10⁻⁴.
 double sheen_albedo(double cosine, double roughness);
 
-/// Cells of shaders/shared/albedo.h; with interpolation exact to 10⁻³. The second table only where asked for: without
-/// it those cells are missing.
+/// Cells of shaders/shared/albedo.h; with interpolation exact to 10⁻³ (of the value, where that is above 1). The second
+/// table only where asked for: without it those cells are missing.
 std::vector<vec4> make_albedo_cells(bool with_sheen, unsigned threads);
 
 }  // namespace etalon

@@ -136,6 +136,7 @@ BsdfSample sample_bsdf(Bsdf bsdf, vec3 wo, vec3 u)
     if (kGlossy && bsdf.model == kModelMetallicRoughness) {
         GlossySample drawn = sample_glossy(bsdf.glossy, wo, u);
         if (kVolume && max_component(drawn.straight) > 0.0) return BsdfSample(drawn.wi, drawn.straight, 0.0);
+        if (drawn.wi == vec3(0.0)) return kNoBsdfSample;
         wi = drawn.wi;
     }
     float pdf;

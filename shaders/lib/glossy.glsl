@@ -215,7 +215,7 @@ vec3 eval_bent(Glossy g, vec3 wo, vec3 wi, float excess, out float pdf)
 {
     float eta = 1.0 + excess;
     vec3 h = robust_normalize(wo + eta * wi);
-    h = h.z < 0.0 ? -h : h;
+    h = h.z < 0.0 ? -h : (h == vec3(0.0) ? vec3(0.0, 0.0, 1.0) : h);
     float oh = dot(wo, h);
     float ih = -dot(wi, h);
     bool bends = oh > 0.0 && ih > 0.0 && excess != 0.0;
@@ -275,7 +275,9 @@ vec3 eval_glossy(Glossy g, vec3 wo, vec3 wi, out float pdf)
     float scattered = (lobes.diffuse - lobes.specular) * cosine_hemisphere_pdf(cos_i);
 
     vec3 value = ((1.0 - hat) * g.diffuse / kPi + f * g.boost * facets) * cos_i;
-    if (kTransmission) seen *= reflects ? 1.0 - through_chance(g, f, hat) : through_chance(g, f, hat);
+    float through = 0.0;
+    if (kTransmission) through = through_chance(g, f, hat);
+    if (kThroughLobes) seen *= reflects ? 1.0 - through : through;
     pdf = seen + scattered;
     if (kThroughLobes && !reflects) {
         value = (1.0 - hat) * (g.diffuse_through / kPi + g.through * facets) * cos_i;
@@ -311,7 +313,7 @@ vec3 eval_glossy(Glossy g, vec3 wo, vec3 wi, out float pdf)
 }
 
 struct GlossySample {
-    vec3 wi;
+    vec3 wi;        // zero where a facet sends it to the side that its lobe does not reach: it carries nothing
     vec3 straight;  // weight of a sample that goes straight through a body of index 1; else 0
 };
 
@@ -323,7 +325,9 @@ GlossySample sample_glossy(Glossy g, vec3 wo, vec3 u)
     vec3 cosine = sample_cosine_hemisphere(u.xy);
     bool specular = u.z < lobes.specular;
     float oh = dot(wo, h);
-    GlossySample drawn = GlossySample(specular ? 2.0 * oh * h - wo : cosine, vec3(0.0));
+    vec3 mirrored = 2.0 * oh * h - wo;
+    mirrored = mirrored.z > 0.0 ? mirrored : vec3(0.0);
+    GlossySample drawn = GlossySample(specular ? mirrored : cosine, vec3(0.0));
     if (kTransmission) {
         vec3 f;
         vec3 hat;
@@ -341,7 +345,8 @@ GlossySample sample_glossy(Glossy g, vec3 wo, vec3 u)
             float eta = 1.0 + excess;
             float square = 1.0 - (1.0 - oh * oh) / (eta * eta);
             // Total for this channel: a direction that carries nothing.
-            vec3 bent = square > 0.0 ? robust_normalize((oh / eta - sqrt(max(square, 0.0))) * h - wo / eta) : vec3(0.0);
+            vec3 bent = robust_normalize((oh / eta - sqrt(max(square, 0.0))) * h - wo / eta);
+            bent = square > 0.0 && bent.z < 0.0 ? bent : vec3(0.0);
             wi = g.body ? bent : wi;
             if (through && g.body && excess == 0.0) {
                 wi = -wo;
@@ -360,7 +365,9 @@ GlossySample sample_glossy(Glossy g, vec3 wo, vec3 u)
         vec3 wo_coat = to_local(coat, wo);
         wo_coat.z = max(wo_coat.z, 1e-7);
         vec3 h_coat = to_world(coat, sample_ggx_vndf(wo_coat, g.coat_alpha, u.xy));
-        drawn.wi = u.z >= lobes.sheen ? 2.0 * dot(wo, h_coat) * h_coat - wo : drawn.wi;
+        vec3 wi = 2.0 * dot(wo, h_coat) * h_coat - wo;
+        wi = dot(g.coat_n, wi) > 0.0 && dot(g.ng, wi) > 0.0 ? wi : vec3(0.0);
+        drawn.wi = u.z >= lobes.sheen ? wi : drawn.wi;
     }
     return drawn;
 }

@@ -8,6 +8,17 @@ const bool kMirror = true;
 const bool kRoughConductor = true;
 const bool kDielectric = true;
 const bool kRoughDielectric = true;
+const bool kSpecularGlossiness = false;
+const bool kSpecular = false;
+const bool kClearcoat = false;
+const bool kSheen = false;
+const bool kTransmission = false;
+const bool kVolume = false;
+const bool kIridescence = false;
+const bool kAnisotropy = false;
+const bool kDispersion = false;
+const bool kDiffuseTransmission = false;
+vec4 albedo_cell(int index) { return vec4(1.0); }
 #include "shaders/lib/bsdf.glsl"
 #include "shaders/shared/rng.h"
 #include "tests/gpu/path_bsdf.h"
@@ -20,7 +31,8 @@ void main()
     const uint i = kernel_index();
     if (i >= count) return;
     const BsdfCall row = inputs[i];
-    const Bsdf bsdf = Bsdf(row.model, row.diffuse, row.f0, row.alpha, row.eta, row.k, row.excess);
+    const Bsdf bsdf = Bsdf(row.model, row.diffuse, row.alpha, row.eta, row.k, row.excess,
+                           plain_glossy(row.diffuse, row.f0, row.alpha));
     BsdfResult result;
     if (row.sampled != 0u) {
         const uvec4 bits = random_bits(row.index, 0u, 0u, 77u);
