@@ -166,15 +166,17 @@ RasterBudget raster_budget(const PosedScene& posed, const RenderSettings& settin
 {
     double alpha = 1, shares = 0;
     bool textured = false, transmits = false;
-    const bool lit = !posed.lights.empty() && settings.shading != Shading::blinn_phong;
+    bool lit = !posed.lights.empty();
     const auto add = [&](const Material& material) {
         alpha = std::min(alpha, sharpest_alpha(material));
-        if (lit) shares = std::max(shares, share_error(material));
+        lit = lit || material.emission != dvec3(0);
+        shares = std::max(shares, share_error(material));
         textured = textured || is_textured(material);
         transmits = transmits || (material.layers && material.layers->transmission > 0);
     };
     for (const Draw& draw : posed.draws) add(posed.material(draw));
-    for (const PosedSphere& sphere : posed.spheres) add(posed.scene->materials[sphere.material]);
+    for (const PosedSphere& sphere : posed.spheres) add(posed.materials()[sphere.material]);
+    if (!lit || settings.shading == Shading::blinn_phong) shares = 0;
     RasterBudget budget{.relative = kRounding + 2 * kTurn / alpha + shares};
     // Where a transmitting surface looks behind: a film position off by ten roundings of its size, times a difference
     // of neighbours of at most 1.

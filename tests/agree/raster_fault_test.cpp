@@ -44,6 +44,16 @@ TEST(RasterFaults, a_planted_error_of_one_per_cent_is_found)
                      for (vec3& n : p.normals) n = vec3(dmat3(rotation_y(0.01)) * dvec3(n));
          }},
         {"an environment 1% too bright", "furnace-lambert", [](Scene& s) { s.roots[0].environment->scale *= 1.01; }},
+        {"a film 1% too thick", "iridescence",
+         [](Scene& s) {
+             for (Material& m : s.materials)
+                 if (m.layers) m.layers->iridescence_thickness_max *= 1.01;
+         }},
+        {"a transmission 2% too low", "transmission",
+         [](Scene& s) {
+             for (Material& m : s.materials)
+                 if (m.layers) m.layers->transmission *= 0.98;
+         }},
         {"a vertex moved by a fifth of a pixel", "triangle",
          [](Scene& s) { s.meshes[0].primitives[0].positions[0].x += 0.004f; }},
     };

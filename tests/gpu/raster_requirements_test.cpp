@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <bitset>
 #include <string>
 
@@ -31,6 +32,24 @@ bool same(const Film& a, const Film& b)
     return a.mean == b.mean && a.alpha == b.alpha && a.aovs.depth == b.aovs.depth && a.aovs.uv == b.aovs.uv;
 }
 
+/// Every built-in scene, those that show one material layer each among them.
+std::vector<Scene> all_scenes()
+{
+    std::vector<Scene> scenes;
+    std::vector<std::string> names;
+    for (const BuiltinScene& builtin : builtin_scenes()) names.emplace_back(builtin.name);
+    for (const char* layer : {"specular", "clearcoat", "sheen", "transmission", "volume", "iridescence", "anisotropy",
+                              "dispersion", "diffuse-transmission", "specular-glossiness"})
+        if (std::find(names.begin(), names.end(), layer) == names.end()) names.emplace_back(layer);
+    for (const std::string& name : names) scenes.push_back(make_builtin(name));
+    return scenes;
+}
+
+std::string_view short_name(const Scene& scene)
+{
+    return std::string_view(scene.name).substr(scene.name.find(':') + 1);
+}
+
 RenderSettings settings_for(std::string_view builtin)
 {
     RenderSettings settings;
@@ -60,28 +79,26 @@ Scene textured_scene()
 
 TEST_F(RasterRequirements, all_bits_set_give_the_same_pixels)
 {
-    for (const BuiltinScene& builtin : builtin_scenes()) {
-        const Scene scene = make_builtin(builtin.name);
+    for (const Scene& scene : all_scenes()) {
         const PosedScene posed = pose(scene, {.size = kSize});
-        const RenderSettings settings = settings_for(builtin.name);
+        const RenderSettings settings = settings_for(short_name(scene));
         const Requirements needed = require(posed, settings);
         Requirements all = needed;
         for (std::size_t i = 0; i < kFeatureCount; ++i) all.set(static_cast<Feature>(i), "test");
         all.texture_used.assign(scene.textures.size(), true);
         all.material_used.assign(scene.materials.size(), true);
-        EXPECT_TRUE(same(render(posed, needed, settings), render(posed, all, settings))) << builtin.name;
+        EXPECT_TRUE(same(render(posed, needed, settings), render(posed, all, settings))) << scene.name;
     }
 }
 
 TEST_F(RasterRequirements, every_bit_is_necessary_to_some_scene)
 {
-    std::vector<Scene> scenes{textured_scene()};
-    for (const BuiltinScene& builtin : builtin_scenes()) scenes.push_back(make_builtin(builtin.name));
+    std::vector<Scene> scenes = all_scenes();
+    scenes.push_back(textured_scene());
     std::bitset<kFeatureCount> met, necessary;
     for (const Scene& scene : scenes) {
         const PosedScene posed = pose(scene, {.size = kSize});
-        const std::string_view name = std::string_view(scene.name).substr(scene.name.find(':') + 1);
-        const RenderSettings settings = settings_for(name);
+        const RenderSettings settings = settings_for(short_name(scene));
         const Requirements needed = require(posed, settings);
         met |= needed.bits;
         if ((needed.bits & ~necessary).none()) continue;
