@@ -1,5 +1,6 @@
 #include "engine/base/files.h"
 
+#include <dirent.h>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
@@ -8,6 +9,7 @@
 
 #include <cerrno>
 #include <cstdint>
+#include <memory>
 #include <new>
 #include <optional>
 #include <random>
@@ -180,10 +182,11 @@ bool lock(const File& file)
 /// loses nothing: either it holds the lock, or it has given up the name, which nobody will use again.
 void sweep(const fs::path& folder)
 {
-    std::error_code ignored;
-    for (fs::directory_iterator entry(folder, ignored), end; !ignored && entry != end; entry.increment(ignored)) {
-        const fs::path& path = entry->path();
-        if (!is_temporary(path.filename().native())) continue;
+    // Not std::filesystem's iterator: out of memory, it ends the program.
+    const std::unique_ptr<DIR, int (*)(DIR*)> opened(::opendir(folder.c_str()), ::closedir);
+    while (const dirent* const entry = opened ? ::readdir(opened.get()) : nullptr) {
+        if (!is_temporary(entry->d_name)) continue;
+        const fs::path path = folder / entry->d_name;
         const File file = File::open(path, O_RDWR | O_NOFOLLOW | O_NONBLOCK);
         struct stat info {};
         if (file.is_open() && ::fstat(file.get(), &info) == 0 && S_ISREG(info.st_mode) && lock(file))

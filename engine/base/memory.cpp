@@ -4,9 +4,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <exception>
 #include <filesystem>
 #include <fstream>
+#include <new>
 #include <string>
+#include <string_view>
+
+#include "engine/base/error.h"
 
 namespace etalon {
 namespace {
@@ -70,6 +75,21 @@ std::uint64_t memory_peak()
 {
     rusage used{};
     return getrusage(RUSAGE_SELF, &used) == 0 ? static_cast<std::uint64_t>(used.ru_maxrss) * 1024 : 0;
+}
+
+void exit_when_out_of_memory()
+{
+    static const std::terminate_handler otherwise = std::get_terminate();
+    std::set_terminate([] {
+        try {
+            if (const std::exception_ptr fault = std::current_exception()) std::rethrow_exception(fault);
+        } catch (const std::bad_alloc&) {
+            constexpr std::string_view kText = "etalon: out of memory\n  mend: a smaller --size or scene takes less\n";
+            static_cast<void>(!::write(STDERR_FILENO, kText.data(), kText.size()));  // nobody is left to be told
+            ::_exit(static_cast<int>(Blame::machine));
+        } catch (...) {}
+        otherwise();
+    });
 }
 
 }  // namespace etalon

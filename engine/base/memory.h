@@ -11,4 +11,8 @@ std::uint64_t memory_of_machine();
 std::uint64_t memory_held();
 std::uint64_t memory_peak();
 
+/// For `main`, first of all: where an allocation fails in a destructor (that of a JSON document, of a library) and the
+/// program must end, it says "out of memory" and ends with the exit code of Blame::machine instead of a signal.
+void exit_when_out_of_memory();
+
 }  // namespace etalon

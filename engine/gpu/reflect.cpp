@@ -31,9 +31,12 @@ class Module {
 
     void check(spvc_result result) const
     {
-        if (result != SPVC_SUCCESS)
-            throw Error(Blame::input, std::string("this is not a SPIR-V shader: ") +
-                                          spvc_context_get_last_error_string(context_.get()));
+        if (result == SPVC_SUCCESS) return;
+        const std::string why = spvc_context_get_last_error_string(context_.get());
+        // Whatever was thrown within is an invalid shader to it, with the exception's name as the reason.
+        if (result == SPVC_ERROR_OUT_OF_MEMORY || why.find("bad_alloc") != std::string::npos)
+            throw Error(Blame::machine, "no memory to look at a shader");
+        throw Error(Blame::input, "this is not a SPIR-V shader: " + why);
     }
 
     std::span<const spvc_reflected_resource> list(spvc_resource_type type) const

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/base/error.h"
+#include "engine/base/memory.h"
 #include "etalon_version.h"
 #include "tools/etalon/help.h"
 #include "tools/etalon/json.h"
@@ -80,6 +81,7 @@ int fail(const Error& error, bool json) noexcept
 int main(int argc, char** argv)
 {
     using namespace etalon;
+    exit_when_out_of_memory();
     std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is an error code of write(), not a death
     std::signal(SIGXFSZ, SIG_IGN);  // and so is the limit on the size of files
     cli::reserve_standard_streams();

@@ -1,4 +1,5 @@
 #include "engine/base/error.h"
+#include "engine/base/memory.h"
 
 #include <gtest/gtest.h>
 
@@ -34,6 +35,20 @@ TEST(Error, a_hostile_name_neither_moves_the_cursor_nor_forges_a_line)
 TEST(Error, names_in_utf8_are_left_alone)
 {
     EXPECT_EQ(Error(Blame::input, "Möbius → 椅子").message(), "etalon: Möbius → 椅子");
+}
+
+struct Exhausted {
+    ~Exhausted() { throw std::bad_alloc(); }  // in a destructor, which ends the program
+};
+
+TEST(OutOfMemoryDeathTest, in_a_destructor_it_is_said_with_the_exit_code_of_the_machine)
+{
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    const auto destroy = [] {
+        exit_when_out_of_memory();
+        const Exhausted exhausted;
+    };
+    EXPECT_EXIT(destroy(), ::testing::ExitedWithCode(3), "etalon: out of memory\n  mend: ");
 }
 
 TEST(AssumeDeathTest, a_broken_assumption_aborts_with_its_place)
