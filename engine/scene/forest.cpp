@@ -25,13 +25,14 @@ void check_forest(const std::vector<std::vector<std::size_t>>& children,
     const std::size_t none = children.size();
     std::vector<std::size_t> parent(children.size(), none);
     for (std::size_t i = 0; i < children.size(); ++i)
-        for (const std::size_t child : children[i]) {
+        for (std::size_t k = 0; k < children[i].size(); ++k) {
+            const std::size_t child = children[i][k];
             if (parent[child] == i)
-                throw fault(fmt::format("/nodes/{}/children", i),
+                throw fault(fmt::format("/nodes/{}/children/{}", i, k),
                             fmt::format("node {} is listed twice [DUPLICATE_ELEMENTS]", child));
             if (parent[child] != none)
                 throw fault(
-                    fmt::format("/nodes/{}/children", i),
+                    fmt::format("/nodes/{}/children/{}", i, k),
                     fmt::format("node {} already is a child of node {} [NODE_PARENT_OVERRIDE]", child, parent[child]));
             parent[child] = i;
         }
@@ -57,13 +58,14 @@ void check_forest(const std::vector<std::vector<std::size_t>>& children,
 
     std::vector<std::size_t> listed_in(children.size(), scenes.size());
     for (std::size_t s = 0; s < scenes.size(); ++s) {
-        for (const std::size_t node : scenes[s]) {
+        for (std::size_t k = 0; k < scenes[s].size(); ++k) {
+            const std::size_t node = scenes[s][k];
             if (parent[node] != none)
-                throw fault(fmt::format("/scenes/{}/nodes", s),
+                throw fault(fmt::format("/scenes/{}/nodes/{}", s, k),
                             fmt::format("node {} is no root: it is a child of node {} [SCENE_NON_ROOT_NODE]", node,
                                         parent[node]));
             if (listed_in[node] == s)
-                throw fault(fmt::format("/scenes/{}/nodes", s),
+                throw fault(fmt::format("/scenes/{}/nodes/{}", s, k),
                             fmt::format("node {} is listed twice [DUPLICATE_ELEMENTS]", node));
             listed_in[node] = s;
         }

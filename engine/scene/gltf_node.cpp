@@ -92,7 +92,7 @@ Light light_of(const tinygltf::Light& in, const std::string& pointer)
         out.inner_cone = in.spot.innerConeAngle;
         out.outer_cone = in.spot.outerConeAngle;
         if (!(out.inner_cone >= 0 && out.inner_cone < out.outer_cone && out.outer_cone <= kPi / 2 + 1e-6))
-            throw fault(pointer + "/spot",
+            throw fault(pointer + "/spot/outerConeAngle",
                         fmt::format("cones of {} and {} radians [KHR_LIGHTS_PUNCTUAL_LIGHT_SPOT_ANGLES]",
                                     out.inner_cone, out.outer_cone),
                         "0 <= inner < outer <= pi/2");

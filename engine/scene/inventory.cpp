@@ -168,6 +168,7 @@ Inventory describe(const Scene& scene)
     }
     for (const Skin& skin : scene.skins) out.skins.push_back({skin.name, skin.joints.size()});
     out.warnings = scene.warnings;
+    out.broken_rules = scene.broken_rules;
     return out;
 }
 

@@ -64,6 +64,7 @@ struct Inventory {
     std::vector<SkinRow> skins;
     std::size_t morph_targets = 0;  ///< of all primitives
     std::vector<std::string> warnings;
+    std::vector<std::string> broken_rules;
 
     std::size_t nodes = 0;
     std::size_t meshes = 0;

@@ -33,10 +33,11 @@ Index variant_of(const Scene& scene, const std::string& name)
 
 void refuse_warnings(const Scene& scene)
 {
-    if (scene.warnings.empty()) return;
+    const std::size_t count = scene.warnings.size() + scene.broken_rules.size();
+    if (count == 0) return;
     throw Error(Blame::input,
-                scene.warnings.front() +
-                    (scene.warnings.size() == 1 ? "" : fmt::format(" (and {} more)", scene.warnings.size() - 1)),
+                (scene.warnings.empty() ? scene.broken_rules : scene.warnings).front() +
+                    (count == 1 ? "" : fmt::format(" (and {} more)", count - 1)),
                 "leave out --strict to go on with warnings");
 }
 
@@ -51,8 +52,11 @@ Scene parse_gltf(std::span<const std::byte> bytes, const std::filesystem::path& 
     scene.name = name;
     gltf::list_variants(model, scene);
     gltf::list_metadata(model, scene);
-    const gltf::Source source{model, checked, folder, options.variant ? variant_of(scene, *options.variant) : kNone};
+    const gltf::Decoded decoded = gltf::decode_compressed(model, checked);
+    const gltf::Source source{model, checked, decoded, folder,
+                              options.variant ? variant_of(scene, *options.variant) : kNone};
     scene.warnings = checked.warnings;
+    scene.broken_rules = checked.broken_rules;
     for (std::string& warning : warnings_for_extensions(model.extensionsUsed))
         scene.warnings.push_back(std::move(warning));
     gltf::import_materials(source, scene);

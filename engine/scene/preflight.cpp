@@ -5,6 +5,7 @@
 #include "engine/scene/extensions.h"
 #include "engine/scene/forest.h"
 #include "engine/scene/preflight_parts.h"
+#include "engine/scene/validate.h"
 
 namespace etalon {
 
@@ -17,7 +18,10 @@ void check_version(const json& document)
     const json* asset = member(document, "asset");
     const json* version = asset == nullptr ? nullptr : member(*asset, "version");
     if (version == nullptr || !version->is_string())
-        throw fault("/asset/version", "the file does not say which glTF it is [UNDEFINED_PROPERTY]",
+        throw fault(asset == nullptr     ? ""
+                    : version == nullptr ? "/asset"
+                                         : "/asset/version",
+                    "the file does not say which glTF it is [UNDEFINED_PROPERTY]",
                     "a glTF 2.0 file holds {\"asset\": {\"version\": \"2.0\"}}");
     if (!version->get_ref<const std::string&>().starts_with("2."))
         throw fault("/asset/version", fmt::format("version {} [UNKNOWN_ASSET_MAJOR_VERSION]", brief(*version)),
@@ -89,6 +93,20 @@ void check_counts(const json& document, const Limits& limits)
     });
 }
 
+// The parser wants a node in every target; those of KHR_animation_pointer have none.
+void name_target_nodes(json& document)
+{
+    if (!document.contains("animations")) return;
+    for (json& animation : document["animations"]) {
+        const auto channels = animation.find("channels");
+        if (channels == animation.end() || !channels->is_array()) continue;
+        for (json& channel : *channels)
+            if (channel.is_object() && channel.contains("target") && channel["target"].is_object() &&
+                !channel["target"].contains("node"))
+                channel["target"]["node"] = -1;
+    }
+}
+
 }  // namespace
 
 }  // namespace document
@@ -106,6 +124,7 @@ CheckedGltf preflight(std::span<const std::byte> bytes, const std::filesystem::p
     check_version(document);
     check_extensions(document);
     check_collections(document);
+    check_required(document);
     check_references(document);
     check_nodes(document, limits);
 
@@ -117,8 +136,10 @@ CheckedGltf preflight(std::span<const std::byte> bytes, const std::filesystem::p
     check_accessors(document, views, out.buffers, limits);
     check_counts(document, limits);
     out.images = read_images(document, text, views, out.buffers);
+    out.broken_rules = validate(document, views, out.buffers);
     document.erase("buffers");
     document.erase("images");
+    name_target_nodes(document);
     out.json = document.dump();
     return out;
 }

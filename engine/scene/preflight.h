@@ -33,7 +33,8 @@ struct CheckedGltf {
     std::string json;  ///< the document without `buffers` and `images`
     std::vector<GltfBuffer> buffers;
     std::vector<GltfImage> images;
-    std::vector<std::string> warnings;  ///< rules that were broken without harm, with the validator's code
+    std::vector<std::string> warnings;      ///< what was ignored, with the validator's code
+    std::vector<std::string> broken_rules;  ///< of glTF, without harm to the picture; likewise
 };
 
 /// Looks at a .gltf or .glb file before anything trusts it: GLB chunks, JSON depth and counts, version, required

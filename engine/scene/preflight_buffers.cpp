@@ -38,9 +38,8 @@ std::vector<GltfBuffer> read_buffers(const json& document, const GltfParts& part
             one.bytes = *parts.binary;
         }
         if (has_data && one.bytes.size() < one.declared)
-            throw fault(pointer + "/byteLength",
-                        fmt::format("buffer of {} bytes has only {} [BUFFER_BYTE_LENGTH_MISMATCH]", one.declared,
-                                    one.bytes.size()));
+            throw fault(pointer, fmt::format("buffer of {} bytes has only {} [BUFFER_BYTE_LENGTH_MISMATCH]",
+                                             one.declared, one.bytes.size()));
         one.bytes = one.bytes.first(has_data ? one.declared : 0);
         out.push_back(std::move(one));
     }
@@ -58,7 +57,7 @@ std::vector<View> read_views(const json& document, std::span<const GltfBuffer> b
                  .offset = unsigned_at(view, "byteOffset", pointer, 0)};
         const Unsigned have = buffers[one.buffer].declared;
         if (one.offset > have || one.length > have - one.offset)
-            throw fault(pointer,
+            throw fault(pointer + (one.offset >= have ? "/byteOffset" : "/byteLength"),
                         fmt::format("{} bytes from byte {} do not fit in buffer {} of {} bytes [BUFFER_VIEW_TOO_LONG]",
                                     one.length, one.offset, one.buffer, have));
         if (view.contains("byteStride") && (one.stride < 4 || one.stride > 252 || one.stride % 4 != 0))

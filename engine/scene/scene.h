@@ -309,6 +309,8 @@ struct Scene {
     Index default_root = 0;
     std::vector<Animation> animations;
     std::vector<std::string> warnings;  ///< what was ignored or mended, one line each, with its JSON pointer
+    std::vector<std::string>
+        broken_rules;                   ///< rules of glTF that the file breaks without harm to the picture; likewise
     std::vector<std::string> variants;  ///< names of KHR_materials_variants; LoadOptions::variant chooses
     std::vector<Metadata> metadata;     ///< what KHR_xmp_json_ld says of the asset
 };

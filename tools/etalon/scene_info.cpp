@@ -73,6 +73,7 @@ std::string as_text(const Inventory& scene)
                            row.keys);
     });
     text += section("variants", scene.variants, as_is);
+    text += section("broken rules of glTF", scene.broken_rules, [](const std::string& rule) { return rule; });
     text += section("metadata", scene.metadata, [](const Metadata& row) { return row.name + ": " + row.value; });
     return text;
 }
@@ -147,7 +148,8 @@ Json as_json(const Inventory& scene, const std::string& name)
                          {"animations", animations},
                          {"variants", scene.variants},
                          {"metadata", metadata},
-                         {"warnings", scene.warnings}});
+                         {"warnings", scene.warnings},
+                         {"broken_rules", scene.broken_rules}});
 }
 
 }  // namespace

@@ -38,6 +38,10 @@ Scene open_scene(const std::string& argument, const Arguments& arguments)
         argument == "-" ? parse_gltf(read_stdin(), {}, "standard input", options) : load_scene(argument, options);
     const Terminal terminal = Terminal::of_standard_error();
     for (const std::string& warning : scene.warnings) warn(terminal, fmt::format("{}: {}", argument, warning));
+    if (!scene.broken_rules.empty())
+        warn(terminal,
+             fmt::format("{}: breaks {} {} of glTF without harm to the picture (etalon info lists them)", argument,
+                         scene.broken_rules.size(), scene.broken_rules.size() == 1 ? "rule" : "rules"));
     return scene;
 }
 
