@@ -54,6 +54,17 @@ std::optional<Format> recognise(std::span<const std::byte> bytes)
     return std::nullopt;
 }
 
+// The name of a format that glTF files may carry by extension and that is not decoded here; empty: not one of those.
+std::string_view unread_format(std::span<const std::byte> bytes)
+{
+    const std::string_view head(reinterpret_cast<const char*>(bytes.data()), std::min<std::size_t>(bytes.size(), 16));
+    using namespace std::string_view_literals;
+    if (head.starts_with("\xabKTX 20\xbb\r\n\x1a\n"sv)) return "KTX 2";
+    if (head.starts_with("DDS "sv)) return "DDS";
+    if (head.size() >= 12 && (head.substr(4, 8) == "ftypavif"sv || head.substr(4, 8) == "ftypavis"sv)) return "AVIF";
+    return {};
+}
+
 Error bad(const std::string& name, const std::string& why, const std::string& mend = {})
 {
     return Error(Blame::input, fmt::format("cannot decode {}: {}", name, why), mend);
@@ -66,9 +77,11 @@ Format require_format(std::span<const std::byte> bytes, std::span<const Format> 
     if (format && std::ranges::find(accepted, *format) != accepted.end()) return *format;
     std::string list;
     for (const Format f : accepted) list += (list.empty() ? "" : ", ") + std::string(display_name(f));
+    const std::string_view unread = unread_format(bytes);
     throw bad(name,
-              format ? fmt::format("{} is not accepted here", display_name(*format))
-                     : "its first bytes are of no format we know",
+              format           ? fmt::format("{} is not accepted here", display_name(*format))
+              : unread.empty() ? "its first bytes are of no format we know"
+                               : fmt::format("it is {}, which Etalon does not read", unread),
               "convert it to one of: " + list);
 }
 

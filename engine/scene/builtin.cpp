@@ -35,10 +35,6 @@ constexpr std::array kRows = {
     Row{{"wires", "lines and points beside triangles"}, builtin::wires},
     Row{{"orthographic", "boxes through an orthographic camera"}, builtin::orthographic},
     Row{{"thin-lens", "boxes through a lens that has one plane in focus"}, builtin::thin_lens},
-};
-
-// Made by name but not listed until all three renderers show layers.
-constexpr std::array kLayerRows = {
     Row{{"specular", "other indices of refraction, specular strength and colour"}, builtin::specular},
     Row{{"clearcoat", "varnish, in places, and with a normal map of its own"}, builtin::clearcoat},
     Row{{"sheen", "satin and velvet"}, builtin::sheen},
@@ -67,8 +63,6 @@ std::span<const BuiltinScene> builtin_scenes()
 Scene make_builtin(std::string_view name)
 {
     std::string names;
-    for (const Row& row : kLayerRows)
-        if (row.scene.name == name) return row.make();
     for (const Row& row : kRows) {
         if (row.scene.name == name) return row.make();
         names += fmt::format("{}{}", names.empty() ? "" : ", ", row.scene.name);

@@ -202,11 +202,11 @@ Scene transmission()
 {
     SceneBuilder build("builtin:transmission");
     add_wall(build);
-    Material tinted = surface("tinted", dvec3(0.4, 0.7, 0.95), 0, 0.2);
+    Material tinted = surface("tinted", dvec3(0.4, 0.7, 0.95), 0, 0.35);
     tinted.layers->transmission = 1;
     Material frosted = surface("frosted", dvec3(0.95), 0, 0.5);
     frosted.layers->transmission = 0.9;
-    Material mapped = surface("transmission map", dvec3(0.9, 0.6, 0.3), 0, 0.25);
+    Material mapped = surface("transmission map", dvec3(0.9, 0.6, 0.3), 0, 0.4);
     mapped.layers->transmission = 1;
     mapped.layers->transmission_texture = stripes(build, Rgba8{255, 0, 0, 255}, Rgba8{30, 0, 0, 255});
     show_pane(build, 0, 3, std::move(tinted));
@@ -251,15 +251,15 @@ Scene iridescence()
 {
     SceneBuilder build("builtin:iridescence");
     add_wall(build);
-    Material bubble = surface("film on plastic", dvec3(0.02), 0, 0.25);
+    Material bubble = surface("film on plastic", dvec3(0.02), 0, 0.35);
     bubble.layers->iridescence = 1;
     bubble.layers->iridescence_ior = 1.8;
     bubble.layers->iridescence_thickness_max = 450;
-    Material temper = surface("film on metal", dvec3(0.9, 0.85, 0.8), 1, 0.3);
+    Material temper = surface("film on metal", dvec3(0.5, 0.45, 0.4), 1, 0.35);
     temper.layers->iridescence = 0.8;
     temper.layers->iridescence_ior = 1.4;
     temper.layers->iridescence_thickness_max = 300;
-    Material mapped = surface("film maps", dvec3(0.8), 1, 0.3);
+    Material mapped = surface("film maps", dvec3(0.4), 1, 0.35);
     mapped.layers->iridescence = 1;
     mapped.layers->iridescence_thickness_min = 200;
     mapped.layers->iridescence_thickness_max = 700;
@@ -299,7 +299,9 @@ Scene anisotropy()
     add_tangents(disc, 0);
     build.show("disc", std::move(disc), build.material(std::move(mapped)));
     add_sun(build, dvec3(0.5, 1, 3));
-    build.environment(studio_environment());
+    Environment studio = studio_environment();
+    studio.scale = 0.5;
+    build.environment(std::move(studio));
     return finished(std::move(build));
 }
 
@@ -316,10 +318,9 @@ Scene dispersion()
     rough.name = "rough flint";
     rough.roughness = 0.15;
     show_ball(build, 0, 3, std::move(flint));
-    build.show("prism", make_box(dvec3(0.1, 0, 0), dvec3(0.5, 0.7, 0.5), 0.6), Index(build.material(rough)));
+    build.show("prism", make_box(dvec3(0.1, 0, 0), dvec3(0.5, 0.7, 0.5), 0.6), build.material(rough));
     build.sphere("rough ball", dvec3(1.7, 0, 0), 0.75, build.material(std::move(rough)));
-    add_lamp(build);
-    add_sky(build, 0.5);
+    add_sky(build, 0.8);
     build.max_depth(8);
     return finished(std::move(build));
 }

@@ -24,7 +24,7 @@ Film by_reference(const Scene& scene, const Shot& shot);
 
 /// How often all of tests/agree/path together would raise a false alarm, and each of its comparisons.
 inline constexpr double kFalseAlarm = 1e-3;
-inline constexpr int kComparisons = 40;
+inline constexpr int kComparisons = 50;
 CompareSettings settings();
 
 /// Prints what was found, the power, and records both; fails unless indistinguishable and able to find `must_find` of

@@ -48,7 +48,17 @@ std::vector<Subject> builtin_subjects()
             {"triangle"},
             {"wires"},
             {"orthographic"},
-            {"thin-lens"}};
+            {"thin-lens"},
+            {"specular"},
+            {"clearcoat"},
+            {"sheen"},
+            {"transmission", {.spp = 256}, 0.02},
+            {"volume", {.spp = 256, .max_depth = 8}, 0.02},
+            {"iridescence"},
+            {"anisotropy"},
+            {"dispersion", {.spp = 256, .max_depth = 8}, 0.02},
+            {"diffuse-transmission"},
+            {"specular-glossiness"}};
 }
 
 class PathAgreesOnBuiltin : public ::testing::TestWithParam<Subject> {};

@@ -31,15 +31,6 @@ TEST_F(RasterAgrees, with_the_reference_on_every_built_in_scene)
     }
 }
 
-TEST_F(RasterAgrees, with_the_reference_on_every_layer_of_a_material)
-{
-    for (const char* name : {"specular", "clearcoat", "sheen", "transmission", "volume", "iridescence", "anisotropy",
-                             "dispersion", "diffuse-transmission", "specular-glossiness"}) {
-        const Scene scene = make_builtin(name);
-        expect_rasters_agree(device(), name, pose(scene, {.size = ivec2(96, 48)}), {});
-    }
-}
-
 TEST_F(RasterAgrees, with_one_sample_a_pixel_and_without_mipmaps)
 {
     RenderSettings settings;

@@ -5,6 +5,7 @@
 #include "engine/base/error.h"
 #include "engine/image/io.h"
 #include "engine/scene/pose.h"
+#include "tests/support/errors.h"
 #include "tests/support/files.h"
 #include "tests/unit/scene/gltf_writer.h"
 
@@ -120,6 +121,72 @@ TEST(ImportMaterial, transforms_textures_as_the_extension_says)
     const double u = 0.6, v = 2.1;
     EXPECT_NEAR(at.x, 0.25 + std::cos(0.5) * u + std::sin(0.5) * v, 1e-12);
     EXPECT_NEAR(at.y, 0.5 - std::sin(0.5) * u + std::cos(0.5) * v, 1e-12);
+}
+
+TEST(ImportMaterial, names_the_formats_of_textures_that_it_does_not_read)
+{
+    const auto load = [](const std::string& texture) {
+        GltfWriter file = textured_file(R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":2}}})");
+        file.add("textures", texture);
+        return file.load();
+    };
+    for (const auto& [extension, format] :
+         {std::pair("KHR_texture_basisu", "KTX 2"), std::pair("EXT_texture_avif", "AVIF"),
+          std::pair("MSFT_texture_dds", "DDS")}) {
+        const Scene alone = load(fmt::format(R"({{"extensions":{{"{}":{{"source":0}}}}}})", extension));
+        EXPECT_THAT(alone.warnings, ElementsAre(testing::AllOf(HasSubstr("/textures/2"), HasSubstr(format))));
+        EXPECT_FALSE(alone.materials[0].base_color_texture.present());
+        const Scene with_another =
+            load(fmt::format(R"({{"source":1,"extensions":{{"{}":{{"source":0}}}}}})", extension));
+        EXPECT_TRUE(with_another.materials[0].base_color_texture.present()) << "the PNG is read instead";
+    }
+    const std::pair<const char*, std::string> files[] = {{"KTX 2", "\xabKTX 20\xbb\r\n\x1a\n"},
+                                                         {"DDS", "DDS |"},
+                                                         {"AVIF", std::string("\0\0\0\x1c"
+                                                                              "ftypavif",
+                                                                              12)}};
+    for (const auto& [format, head] : files) {
+        GltfWriter file = textured_file(R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":2}}})");
+        file.add("images",
+                 fmt::format(R"({{"bufferView":{},"mimeType":"image/png"}})", file.add_view(test::bytes_of(head))));
+        file.add("textures", R"({"source":2})");
+        EXPECT_THAT(test::message_of([&] { file.load(); }), HasSubstr(fmt::format("it is {}, which", format)));
+    }
+}
+
+TEST(ImportMaterial, shows_the_materials_of_the_chosen_variant)
+{
+    GltfWriter file = test::triangle_file();
+    file.add("materials", R"({"name":"plain"})");
+    file.add("materials", R"({"name":"red"})");
+    file.member(
+        R"("extensions":{"KHR_materials_variants":{"variants":[{"name":"blue"},{"name":"red"},{"name":"new"}]}})");
+    file.show(R"("attributes":{"POSITION":0},"material":0,"extensions":{"KHR_materials_variants":{"mappings":
+        [{"material":0,"variants":[0]},{"material":1,"variants":[1,2]}]}})");
+    const auto shown = [&](const std::optional<std::string>& variant) {
+        const Scene scene = file.load({.variant = variant});
+        return scene.materials.at(scene.meshes.at(1).primitives.at(0).material).name;
+    };
+    EXPECT_EQ(shown({}), "plain");
+    EXPECT_EQ(shown("blue"), "plain");
+    EXPECT_EQ(shown("red"), "red");
+    EXPECT_EQ(shown("new"), "red");
+    EXPECT_THAT(test::message_of([&] { shown("rad"); }), HasSubstr("did you mean \"red\"?"));
+    EXPECT_THAT(test::message_of([&] { shown("unlike any"); }), HasSubstr("blue, red, new"));
+    EXPECT_THAT(test::message_of([] { test::triangle_file().load({.variant = "red"}); }),
+                HasSubstr("no material variants"));
+}
+
+TEST(ImportMaterial, keeps_what_the_metadata_says_of_the_asset)
+{
+    const std::string text = R"({"asset":{"version":"2.0","extensions":{"KHR_xmp_json_ld":{"packet":1}}},
+        "extensions":{"KHR_xmp_json_ld":{"packets":[{"dc:title":"other"},{"@context":{"dc":"http://purl.org/dc/"},
+        "dc:title":{"@type":"rdf:Alt","rdf:_1":{"@language":"en","@value":"A chair"}},
+        "dc:creator":{"@list":["Ada","Bo"]},"xmp:Rating":5}]}}})";
+    const Scene scene = parse_gltf(test::bytes_of(text), "", "test.gltf");
+    std::vector<std::string> lines;
+    for (const Metadata& row : scene.metadata) lines.push_back(row.name + ": " + row.value);
+    EXPECT_THAT(lines, testing::UnorderedElementsAre("dc:title: A chair", "dc:creator: Ada; Bo", "xmp:Rating: 5"));
 }
 
 TEST(ImportMaterial, reads_unlit_and_emissive_strength)
