@@ -20,7 +20,8 @@ struct Tabulated {
 };
 extern const Tabulated kGgxShare, kSheenShare;
 
-/// Such a function over cosines 0 … 1, interpolated by cubics: within 10⁻³ of the true one. Empty: 1 everywhere.
+/// Such a function over cosines 0 … 1, interpolated by cubics: within 10⁻³ of the true one
+/// (2·10⁻³ for cosines below 10⁻³). Empty: 1 everywhere.
 class ShareTable {
  public:
     ShareTable() = default;
