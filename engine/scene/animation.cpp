@@ -111,16 +111,22 @@ std::vector<double> sample(const AnimationSampler& sampler, double time, bool is
     return out;
 }
 
-Motion evaluate(const Scene& scene, const Animation& animation, double time)
+void evaluate(const Scene& scene, const Animation& animation, double time, Motion& motion)
 {
     assume(std::isfinite(time));
-    Motion motion;
     for (const AnimationChannel& channel : animation.channels) {
         const AnimatedProperty& property = animated_properties()[channel.property];
-        const std::vector<double> value = sample(animation.samplers.at(channel.sampler), time, property.is_rotation);
+        std::vector<double> value = sample(animation.samplers.at(channel.sampler), time, property.is_rotation);
+        for (double& number : value) {
+            if (!std::isfinite(number))
+                throw Error(Blame::input,
+                            fmt::format("animation \"{}\" at {} s: {} of object {} is not finite", animation.name, time,
+                                        property.pointer, channel.object),
+                            "repair the keys");
+            number = std::clamp(number, property.low, property.high);
+        }
         property.set(scene, channel.object, value, motion);
     }
-    return motion;
 }
 
 const Animation& find_animation(const Scene& scene, const std::string& name_or_index)

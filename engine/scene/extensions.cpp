@@ -11,13 +11,14 @@ namespace etalon {
 
 namespace {
 
-constexpr std::array<std::string_view, 21> kSupported = {
+constexpr std::array<std::string_view, 26> kSupported = {
     "KHR_lights_punctual", "KHR_texture_transform", "KHR_materials_unlit", "KHR_materials_emissive_strength",
     "KHR_materials_ior", "KHR_materials_specular", "KHR_materials_clearcoat", "KHR_materials_sheen",
     "KHR_materials_transmission", "KHR_materials_volume", "KHR_materials_iridescence", "KHR_materials_anisotropy",
     "KHR_materials_dispersion", "KHR_materials_diffuse_transmission", "KHR_materials_pbrSpecularGlossiness",
     "KHR_node_visibility", "KHR_mesh_quantization", "EXT_mesh_gpu_instancing", "EXT_texture_webp",
-    "KHR_materials_variants",
+    "KHR_materials_variants", "KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression",
+    "KHR_animation_pointer", "KHR_accessor_float64",
     // Metadata alone.
     "KHR_xmp_json_ld"};
 
@@ -25,13 +26,10 @@ struct Mend {
     std::string_view name;
     std::string_view mend;
 };
-constexpr std::string_view kUncompress =
-    "decode the meshes first: gltf-transform copy in.glb out.glb writes them uncompressed";
-constexpr std::array<Mend, 4> kMends = {{
-    {"KHR_draco_mesh_compression", kUncompress},
-    {"EXT_meshopt_compression", kUncompress},
-    {"KHR_meshopt_compression", kUncompress},
+constexpr std::array<Mend, 3> kMends = {{
     {"KHR_texture_basisu", "use PNG or JPEG textures: gltf-transform ktxdecompress in.glb out.glb"},
+    {"EXT_texture_avif", "use PNG, JPEG or WebP textures: gltf-transform png in.glb out.glb"},
+    {"MSFT_texture_dds", "use PNG, JPEG or WebP textures"},
 }};
 
 }  // namespace

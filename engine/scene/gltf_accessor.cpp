@@ -85,13 +85,16 @@ struct Elements {
 Elements elements(const Source& source, int view_index, std::size_t offset, std::size_t packed)
 {
     const auto& view = source.model.bufferViews.at(static_cast<std::size_t>(view_index));
+    const std::size_t stride = view.byteStride == 0 ? packed : view.byteStride;
+    if (const auto decoded = source.decoded.views.find(static_cast<std::size_t>(view_index));
+        decoded != source.decoded.views.end())
+        return {std::span(decoded->second).subspan(offset), stride};
     const auto& buffer = source.file.buffers.at(static_cast<std::size_t>(view.buffer)).bytes;
     if (buffer.size() < view.byteOffset + view.byteLength)
         throw fault(fmt::format("/bufferViews/{}", view_index),
                     fmt::format("buffer {} has no data in this file [BUFFER_MISSING_GLB_DATA]", view.buffer),
                     "export again; a buffer without uri needs the binary chunk of a .glb");
-    return {buffer.subspan(view.byteOffset, view.byteLength).subspan(offset),
-            view.byteStride == 0 ? packed : view.byteStride};
+    return {buffer.subspan(view.byteOffset, view.byteLength).subspan(offset), stride};
 }
 
 // The positions of a sparse accessor's own elements: increasing, below `count`.
@@ -124,8 +127,12 @@ void for_each_element(const Source& source, const tinygltf::Accessor& accessor, 
                       const std::string& pointer, const Subset& subset, Function put)
 {
     const std::size_t count = subset ? subset->size() : accessor.count;
-    if (accessor.bufferView >= 0) {
-        const Elements from = elements(source, accessor.bufferView, accessor.byteOffset, size);
+    const auto index = static_cast<std::size_t>(&accessor - source.model.accessors.data());
+    const auto decoded = source.decoded.accessors.find(index);
+    if (accessor.bufferView >= 0 || decoded != source.decoded.accessors.end()) {
+        const Elements from = decoded != source.decoded.accessors.end()
+                                  ? Elements{decoded->second, size}
+                                  : elements(source, accessor.bufferView, accessor.byteOffset, size);
         for (std::size_t i = 0; i < count; ++i) put(i, from.bytes, (subset ? (*subset)[i] : i) * from.stride);
     }
     if (!accessor.sparse.isSparse) return;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "engine/base/error.h"
+#include "engine/scene/compressed.h"
 #include "engine/scene/gltf_model.h"
 #include "engine/scene/preflight.h"
 #include "engine/scene/scene.h"
@@ -15,8 +16,10 @@ namespace etalon::gltf {
 struct Source {
     const Model& model;
     const CheckedGltf& file;
+    const Decoded& decoded;
     std::filesystem::path folder;
     Index variant = kNone;  ///< into Scene::variants: whose materials are shown
+    Limits limits{};
 };
 
 /// Fills variants. gltf_metadata.cpp

@@ -76,7 +76,11 @@ class Walk {
                 throw Error(Blame::input, node_label(scene_, index) + ": the world matrix is not finite",
                             "repair the scales and translations above this node");
         // A camera stays usable in a hidden subtree: visibility is about what is drawn.
-        if (node.camera != kNone) cameras.push_back({node.camera, index, world});
+        if (node.camera != kNone) {
+            const auto moved = motion_.cameras.find(node.camera);
+            cameras.push_back({node.camera, index, world,
+                               moved == motion_.cameras.end() ? scene_.cameras[node.camera] : moved->second});
+        }
         const auto shown = motion_.visible.find(index);
         const bool visible = parent_visible && (shown == motion_.visible.end() ? node.visible : shown->second);
         if (visible && node.mesh != kNone) add_draws(node, index, world);
@@ -128,7 +132,9 @@ class Walk {
             out_.notes.push_back(node_label(scene_, index) +
                                  ": a light whose node has no extent in z shines towards -Z");
         }
-        out_.lights.push_back({scene_.lights[node.light], dvec3(world[3]), direction});
+        const auto moved = motion_.lights.find(node.light);
+        out_.lights.push_back(
+            {moved == motion_.lights.end() ? scene_.lights[node.light] : moved->second, dvec3(world[3]), direction});
     }
 
     const Scene& scene_;
@@ -147,9 +153,12 @@ class Deformer {
     {
         const Node& node = scene_.nodes[at.node];
         const auto moved = motion_.weights.find(at.node);
+        const auto moved_mesh = motion_.mesh_weights.find(node.mesh);
         const std::vector<double>& weights = moved != motion_.weights.end() ? moved->second
                                              : !node.weights.empty()        ? node.weights
-                                                                            : scene_.meshes[node.mesh].weights;
+                                             : moved_mesh != motion_.mesh_weights.end()
+                                                 ? moved_mesh->second
+                                                 : scene_.meshes[node.mesh].weights;
         const bool reshaped = std::any_of(weights.begin(), weights.end(), [](double w) { return w != 0; });
         const auto& primitives = scene_.meshes[node.mesh].primitives;
         const auto drawn = static_cast<std::size_t>(
@@ -224,12 +233,19 @@ Motion motion_of(const Scene& scene, const PoseSettings& settings, std::vector<s
 {
     if (!settings.time && !settings.animation) return {};
     const double time = settings.time.value_or(0);
+    Motion motion;
     if (!std::isfinite(time))
         throw Error(Blame::input, fmt::format("{} is no time", time), "seconds from the animation's start");
-    if (settings.animation) return evaluate(scene, find_animation(scene, *settings.animation), time);
-    if (!scene.animations.empty()) return evaluate(scene, scene.animations.front(), time);
-    notes.push_back("no animation: the rest pose at any time");
-    return {};
+    if (scene.animations.empty() && (!settings.animation || settings.animation == kEveryAnimation)) {
+        notes.push_back("no animation: the rest pose at any time");
+    } else if (settings.animation == kEveryAnimation) {
+        for (const Animation& animation : scene.animations) evaluate(scene, animation, time, motion);
+    } else {
+        const Animation& animation =
+            settings.animation ? find_animation(scene, *settings.animation) : scene.animations.front();
+        evaluate(scene, animation, time, motion);
+    }
+    return motion;
 }
 
 // Does this surface light the others? A texture of glowing parts at ordinary strength is decoration: without a lamp in
@@ -242,7 +258,7 @@ bool shines(const Material& material)
 
 bool has_light(const PosedScene& posed)
 {
-    const auto& materials = posed.scene->materials;
+    const auto& materials = posed.materials();
     return !posed.lights.empty() || std::any_of(posed.draws.begin(), posed.draws.end(), [&](const Draw& d) {
         return shines(posed.material(d));
     }) || std::any_of(posed.spheres.begin(), posed.spheres.end(), [&](const PosedSphere& s) {
@@ -318,6 +334,10 @@ PosedScene pose(const Scene& scene, const PoseSettings& settings)
     posed.scene = &scene;
     const ivec2 size = picture_size(settings, root.hints);
     const Motion motion = motion_of(scene, settings, posed.notes);
+    if (!motion.materials.empty()) {
+        posed.moved_materials = scene.materials;
+        for (const auto& [index, material] : motion.materials) posed.moved_materials.at(index) = material;
+    }
     const Walk walk(scene, motion, root, posed);
     Deformer deformer(scene, motion, posed);
     for (const Deformation& deformation : walk.deformations) deformer.deform(deformation);

@@ -43,12 +43,13 @@ struct PosedLight {
 };
 
 /// What a renderer draws: a scene at one instant, flattened, seen by one view. `scene` must outlive it. Geometry is to
-/// be had from primitive(draw): that of the scene is as it is before it moves.
+/// be had from primitive(draw) and materials from materials(): those of the scene are as they are before they move.
 struct PosedScene {
     const Scene* scene = nullptr;
     View view;
     std::vector<Draw> draws;  ///< visible ones, in depth-first node order
     std::vector<Primitive> deformed;
+    std::vector<Material> moved_materials;  ///< as the animation has them, all of them; empty: the scene's
     std::vector<PosedSphere> spheres;
     std::vector<PosedLight> lights;
     Environment environment;             ///< resolved: black when there is none
@@ -59,7 +60,11 @@ struct PosedScene {
     {
         return d.deformed != kNone ? deformed[d.deformed] : scene->meshes[d.mesh].primitives[d.primitive];
     }
-    const Material& material(const Draw& d) const { return scene->materials[primitive(d).material]; }
+    const std::vector<Material>& materials() const
+    {
+        return moved_materials.empty() ? scene->materials : moved_materials;
+    }
+    const Material& material(const Draw& d) const { return materials()[primitive(d).material]; }
 };
 
 struct Orbit {
@@ -69,6 +74,9 @@ struct Orbit {
     std::optional<dvec3> target;     ///< world; centre of the bounds when absent
     std::optional<double> yfov;      ///< degrees; 45 when absent
 };
+
+/// All animations of the file at once; where two move the same thing, the later one does.
+inline constexpr const char* kEveryAnimation = "all";
 
 struct PoseSettings {
     std::optional<Index> root;               ///< which glTF scene; the file's default when absent
@@ -80,7 +88,7 @@ struct PoseSettings {
     double environment_rotation = 0;         ///< degrees, added
     double environment_intensity = 1;        ///< multiplied
     std::optional<double> time;              ///< seconds into the animation, held at its ends; absent: the rest pose
-    std::optional<std::string> animation;    ///< name or index; the first when absent. Alone: at time 0
+    std::optional<std::string> animation;  ///< name, index or kEveryAnimation; the first when absent. Alone: at time 0
     std::optional<std::pair<dvec3, dvec3>> framed;  ///< world box that a framed or orbiting view shows; that of this
                                                     ///< instant when absent
 };

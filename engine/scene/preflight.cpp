@@ -107,6 +107,20 @@ void name_target_nodes(json& document)
     }
 }
 
+// The parser wants a bufferView behind every index; what Draco fills has none. What is decoded goes before it.
+void name_draco_views(json& document)
+{
+    for_each(document, "/meshes/*/primitives/*", [&](const json& primitive, const Place& place) {
+        const json* extensions = member(primitive, "extensions");
+        const json* extension = extensions == nullptr ? nullptr : member(*extensions, "KHR_draco_mesh_compression");
+        const json* indices = member(primitive, "indices");
+        if (extension == nullptr || indices == nullptr) return;
+        json& accessor = document["accessors"][indices->get<std::size_t>()];
+        if (!accessor.contains("bufferView"))
+            accessor["bufferView"] = unsigned_at(*extension, "bufferView", place.pointer());
+    });
+}
+
 }  // namespace
 
 }  // namespace document
@@ -140,6 +154,7 @@ CheckedGltf preflight(std::span<const std::byte> bytes, const std::filesystem::p
     document.erase("buffers");
     document.erase("images");
     name_target_nodes(document);
+    name_draco_views(document);
     out.json = document.dump();
     return out;
 }

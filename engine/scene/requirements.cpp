@@ -88,7 +88,7 @@ class Survey {
           environment_shines_(!posed.environment.is_black())
     {
         out_.texture_used.resize(scene_.textures.size());
-        out_.material_used.resize(scene_.materials.size());
+        out_.material_used.resize(posed_.materials().size());
         for (const Draw& draw : posed_.draws) geometry(draw);
         for (const PosedSphere& sphere : posed_.spheres) {
             out_.set(Feature::spheres, label("node", sphere.node, scene_.nodes[sphere.node].name));
@@ -119,7 +119,7 @@ class Survey {
                 out_.set(Feature::triangles, who);
                 break;
         }
-        const Material& surface = scene_.materials[primitive.material];
+        const Material& surface = posed_.materials()[primitive.material];
         const bool lit = surface.model != BsdfModel::unlit;
         if (primitive.has_normals && (lit || settings_.aovs)) out_.set(Feature::normals, who);
         if (!primitive.colors.empty() && reads_base_color(surface)) out_.set(Feature::vertex_colors, who);
@@ -132,7 +132,7 @@ class Survey {
     {
         if (out_.material_used[index]) return;
         out_.material_used[index] = true;
-        const Material& m = scene_.materials[index];
+        const Material& m = posed_.materials()[index];
         const std::string who = label("material", index, m.name);
         const bool lit = m.model != BsdfModel::unlit;
         out_.set(feature_of(m.model), who);

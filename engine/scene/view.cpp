@@ -6,14 +6,13 @@
 #include <charconv>
 
 #include "engine/base/error.h"
+#include "engine/base/limits.h"
 #include "engine/scene/builder.h"
 
 namespace etalon {
 
 namespace {
 
-constexpr int kMaxSide = 16384;  // the largest image of lavapipe
-constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;
 constexpr ivec2 kStandardSize(1280, 720);
 constexpr double kFramedAzimuth = 35;  // degrees: a three-quarter view
 constexpr double kFramedElevation = 20;
@@ -93,10 +92,13 @@ View orbit_view(const Orbit& orbit, const Subject& subject, ivec2 size)
 ivec2 picture_size(const PoseSettings& settings, const FilmHints& hints)
 {
     const ivec2 size = settings.size ? *settings.size : hints.size.value_or(kStandardSize);
-    if (size.x < 1 || size.y < 1 || size.x > kMaxSide || size.y > kMaxSide ||
-        std::int64_t{size.x} * size.y > kMaxPixels)
+    const Limits limits(LimitLevel::none);  // the user's own are the caller's to keep
+    const auto most_side = std::int64_t(limits.picture_side);
+    const auto most_pixels = std::int64_t(limits.picture_pixels);
+    if (size.x < 1 || size.y < 1 || size.x > most_side || size.y > most_side ||
+        std::int64_t{size.x} * size.y > most_pixels)
         throw Error(Blame::input, fmt::format("a picture of {}x{} pixels is not possible", size.x, size.y),
-                    fmt::format("1 to {} pixels a side, {} in all", kMaxSide, kMaxPixels));
+                    fmt::format("1 to {} pixels a side, {} in all", most_side, most_pixels));
     return size;
 }
 
@@ -114,7 +116,7 @@ View choose_view(const Scene& scene, std::span<const PlacedCamera> cameras, cons
         return view;
     }
     const PlacedCamera& placed = settings.camera ? find_camera(scene, cameras, *settings.camera) : cameras.front();
-    View view{.width = size.x, .height = size.y, .world_from_camera = dmat4(1), .camera = scene.cameras[placed.camera]};
+    View view{.width = size.x, .height = size.y, .world_from_camera = dmat4(1), .camera = placed.state};
     view.world_from_camera = rigid(placed.world_from_node, "camera " + label(scene, placed));
     view.camera.xmag = view.camera.ymag * size.x / size.y;
     return view;

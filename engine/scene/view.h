@@ -12,6 +12,7 @@ struct PlacedCamera {
     Index camera = 0;
     Index node = 0;
     dmat4 world_from_node{1};
+    Camera state{};  ///< the camera at this instant
 };
 
 /// What there is to look at: a sphere about it.

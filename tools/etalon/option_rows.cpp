@@ -35,7 +35,7 @@ const Rows& animation_rows()
          .help = "Pose the scene as its animation has it at T seconds; its rest pose when absent",
          .heading = "Animation"},
         {.name = "animation",
-         .argument = "NAME|INDEX",
+         .argument = "NAME|INDEX|all",
          .help = "Which of the file's animations, as `etalon info SCENE` lists them; the first when absent",
          .heading = "Animation"},
     };
@@ -156,6 +156,17 @@ const Rows& load_rows()
          .argument = "NAME",
          .help = "Which of the file's material variants, as `etalon info SCENE` lists them; none when absent",
          .heading = "View"},
+        {.name = "limits",
+         .argument = "LEVEL",
+         .help = "How much a scene may ask for before it is refused (docs/limits.md); strict suits files of strangers",
+         .standard = "standard",
+         .choices = {"none", "standard", "strict"},
+         .heading = "Behaviour"},
+        {.name = "memory",
+         .argument = "N",
+         .help = "Bytes that may be needed in all, as 800M or 4G; what is predicted to need more is refused. Three "
+                 "quarters of the machine's when absent",
+         .heading = "Behaviour"},
         {.name = "strict", .help = "Warnings about the scene or the picture become errors", .heading = "Behaviour"},
     };
     return rows;
