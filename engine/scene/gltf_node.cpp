@@ -72,7 +72,7 @@ Camera camera_of(const tinygltf::Camera& in, const std::string& pointer)
     return out;
 }
 
-Light light_of(const tinygltf::Light& in, const std::string& pointer)
+Light light_of(const tinygltf::Light& in, const std::string& pointer, Scene& scene)
 {
     Light out;
     out.name = in.name;
@@ -80,9 +80,12 @@ Light light_of(const tinygltf::Light& in, const std::string& pointer)
         out.type = LightType::spot;
     else if (in.type == "directional")
         out.type = LightType::directional;
-    else if (in.type != "point")
-        throw fault(pointer + "/type", fmt::format("\"{}\" [VALUE_NOT_IN_LIST]", in.type),
-                    "point, spot or directional");
+    else if (in.type != "point") {
+        scene.warnings.push_back(fmt::format("{}/type: \"{}\" is not known [VALUE_NOT_IN_LIST]: the light is ignored",
+                                             pointer, in.type.substr(0, 60)));
+        out.intensity = 0;
+        return out;
+    }
     if (in.color.size() == 3) out.color = dvec3(in.color[0], in.color[1], in.color[2]);
     out.intensity = in.intensity;
     out.range = in.range;
@@ -190,7 +193,8 @@ void import_nodes(const Source& source, Scene& scene)
     for (std::size_t i = 0; i < model.cameras.size(); ++i)
         scene.cameras.push_back(camera_of(model.cameras[i], fmt::format("/cameras/{}", i)));
     for (std::size_t i = 0; i < model.lights.size(); ++i)
-        scene.lights.push_back(light_of(model.lights[i], fmt::format("/extensions/KHR_lights_punctual/lights/{}", i)));
+        scene.lights.push_back(
+            light_of(model.lights[i], fmt::format("/extensions/KHR_lights_punctual/lights/{}", i), scene));
     AccessorReader reader(source);
     for (std::size_t i = 0; i < model.nodes.size(); ++i)
         scene.nodes.push_back(node_of(model.nodes[i], fmt::format("/nodes/{}", i), reader, model.materials.size()));
