@@ -81,7 +81,7 @@ const MaterialLayers* medium_towards(const World& world, const Surface& s, const
                                      const MaterialLayers* medium)
 {
     if (!s.layered || !s.layered->body || dot(wi, s.ng) > 0) return medium;
-    return s.front ? &*world.posed->scene->materials[s.material].layers : nullptr;
+    return s.front ? &*world.posed->materials()[s.material].layers : nullptr;
 }
 
 dvec3 through(const MaterialLayers* medium, double distance)

@@ -100,7 +100,7 @@ World::World(const PosedScene& p, const std::vector<bool>& textures_used, bool m
         sheen_share = sheen_share_of(*p.scene);
     }
     for (const Draw& draw : p.draws) frames.push_back(frame_of(draw.world_from_object));
-    for (const Material& m : p.scene->materials)
+    for (const Material& m : p.materials())
         always_opaque.push_back(m.alpha_mode == AlphaMode::opaque &&
                                 (m.double_sided || is_exact_model(m.model) || is_body(m)));
 }

@@ -16,7 +16,7 @@ struct World {
     /// `textures_used` as Requirements has it; `mipmaps`: textures get their coarser levels.
     World(const PosedScene& posed, const std::vector<bool>& textures_used, bool mipmaps);
 
-    const Material& material(const Shape& shape) const { return posed->scene->materials[shape.material]; }
+    const Material& material(const Shape& shape) const { return posed->materials()[shape.material]; }
 
     /// How a draw's attributes turn into world space.
     struct Frame {

@@ -12,7 +12,7 @@ namespace {
 
 void check_model(const PosedScene& posed, const Requirements& required, Index material)
 {
-    const Material& m = posed.scene->materials[material];
+    const Material& m = posed.materials()[material];
     if (required.has(feature_of(m.model))) return;
     throw Error(Blame::input,
                 fmt::format("material {} ({}) needs {}, which the requirements lack", material, m.name,

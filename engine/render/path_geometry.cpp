@@ -111,7 +111,7 @@ class Flattening {
     }
 
  private:
-    const Material& material(Index index) const { return posed_.scene->materials[index]; }
+    const Material& material(Index index) const { return posed_.materials()[index]; }
 
     void list()
     {

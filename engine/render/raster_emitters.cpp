@@ -53,7 +53,7 @@ std::vector<RasterEmitter> find_emitters(const PosedScene& posed)
     }
     for (std::size_t i = 0; i < posed.spheres.size(); ++i) {
         const PosedSphere& sphere = posed.spheres[i];
-        const Material& material = posed.scene->materials[sphere.material];
+        const Material& material = posed.materials()[sphere.material];
         RasterEmitter emitter;
         emitter.area = 4 * kPi * sphere.radius * sphere.radius;
         emitter.center = sphere.center;

@@ -96,7 +96,7 @@ RasterVariant RasterVariants::of(const Draw& draw, RasterTarget target) const
 
 RasterVariant RasterVariants::of(const PosedSphere& sphere, RasterTarget target) const
 {
-    const Material& material = posed_.scene->materials[sphere.material];
+    const Material& material = posed_.materials()[sphere.material];
     // A sphere has neither texture coordinates nor tangents: its factors alone count.
     Material plain = material;
     plain.base_color_texture = plain.metallic_roughness_texture = plain.normal_texture = {};
