@@ -74,10 +74,10 @@ RasterScene::RasterScene(gpu::Device& device, const PosedScene& posed, const Req
         throw Error(Blame::machine, fmt::format("{} cannot draw 4 samples a pixel in float32", device.name()),
                     "render with --msaa 1");
     add_items(progress);
+    if (std::any_of(items_.begin(), items_.end(), [](const Item& item) { return item.transmits; }))
+        behind_.emplace(device);
     add_environment();
     add_albedo();
-    const bool transmits = std::any_of(items_.begin(), items_.end(), [](const Item& item) { return item.transmits; });
-    if (transmits) behind_.emplace(device);
     nothing_behind_ = upload_picture(device, Image(), "nothing behind");
     frame_bindings_ = bind_frame(nothing_behind_);
 }
@@ -93,8 +93,8 @@ void RasterScene::add_environment()
     const bool seen = settings_.background == Background::environment;
     if (seen && shines && required_.has(Feature::visible_background))
         add_background(true);
-    else if (settings_.background != Background::transparent)
-        add_background(false);
+    else if (behind_ && settings_.background != Background::transparent)
+        add_background(false);  // drawn, not cleared: what is seen through surfaces has no background
 }
 
 void RasterScene::add_background(bool environment)
@@ -116,9 +116,10 @@ void RasterScene::add_albedo()
 {
     bool any = false, sheen = false;
     for (const Item& item : items_) {
-        const Material& material = posed_.scene->materials[item.material];
-        any |= variants_.has_layers(material);
-        sheen |= any && material.layers && material.layers->sheen_color != dvec3(0);
+        const Material& material = posed_.materials()[item.material];
+        const bool own = variants_.has_layers(material);
+        any |= own;
+        sheen |= own && material.layers && material.layers->sheen_color != dvec3(0);
     }
     const std::vector<vec4> cells =
         any ? timed(times_, "albedo", [&] { return make_albedo_cells(sheen, settings_.threads); })
@@ -168,7 +169,7 @@ RasterScene::Item RasterScene::item_of_sphere(std::uint32_t sphere)
 
 void RasterScene::finish(Item& item, const RasterVariant& color, const std::optional<RasterVariant>& aovs)
 {
-    const Material& material = posed_.scene->materials[item.material];
+    const Material& material = posed_.materials()[item.material];
     item.mode = material.alpha_mode;
     item.transmits = color.get(RasterConstant::transmission) != 0;
     textures_.require(material, color);

@@ -94,9 +94,12 @@ void RasterScene::draw(const View& view)
 
 void RasterScene::draw_color(gpu::Commands& commands, const View& view)
 {
+    VkClearColorValue clear{{0, 0, 0, behind_ || settings_.background == Background::transparent ? 0.f : 1.f}};
+    if (!behind_ && settings_.background == Background::colour)
+        for (int c = 0; c < 3; ++c) clear.float32[c] = static_cast<float>(settings_.background_color[c]);
     const bool multisampled = targets_.is_multisampled();
     std::array<gpu::ColorTarget, 1> color{{{.image = multisampled ? &targets_.color : &targets_.resolved,
-                                            .clear = VkClearColorValue{},
+                                            .clear = clear,
                                             .resolve = multisampled ? &targets_.resolved : nullptr,
                                             .store = !multisampled}}};
     gpu::DepthTarget depth{.image = &targets_.depth};
