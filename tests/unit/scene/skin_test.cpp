@@ -10,6 +10,7 @@
 #include "engine/scene/morph.h"
 #include "engine/scene/pose.h"
 #include "engine/scene/skin.h"
+#include "tests/support/errors.h"
 #include "tests/unit/scene/gltf_writer.h"
 
 namespace etalon {
@@ -284,14 +285,7 @@ TEST(ImportSkin, poses_a_file_at_the_time_asked_for)
 
 TEST(ImportSkin, refuses_what_cannot_be_meant)
 {
-    const auto message = [](const GltfWriter& file) {
-        try {
-            file.load();
-            return std::string("loaded");
-        } catch (const Error& error) {
-            return std::string(error.what());
-        }
-    };
+    const auto message = [](const GltfWriter& file) { return test::message_of([&] { file.load(); }); };
     EXPECT_THAT(message(skinned_file("[1]")), HasSubstr("ACCESSOR_JOINTS_INDEX_OOB"));
     const auto animated = [](const std::vector<float>& times, const std::string& more) {
         GltfWriter file = skinned_file();
@@ -303,8 +297,8 @@ TEST(ImportSkin, refuses_what_cannot_be_meant)
                 more));
         return file;
     };
-    EXPECT_EQ(message(animated({0, 1}, "")), "loaded");
-    EXPECT_EQ(message(animated({0, 0}, "")), "loaded");
+    EXPECT_NO_THROW(animated({0, 1}, "").load());
+    EXPECT_NO_THROW(animated({0, 0}, "").load());
     EXPECT_THAT(message(animated({1, 0}, "")), HasSubstr("NON_INCREASING"));
     EXPECT_THAT(message(animated({0, NAN}, "")), HasSubstr("ACCESSOR_INVALID_FLOAT"));
     EXPECT_THAT(message(animated({0, 1, 2}, "")), HasSubstr("INVALID_COUNT"));
