@@ -135,7 +135,7 @@ void check_skins(const json& document, Findings& findings)
         joint_roots.push_back(roots_of_joints(skins[i]));
         std::vector<std::size_t>& roots = joint_roots.back();
         std::ranges::sort(roots);
-        roots.erase(std::ranges::unique(roots).begin(), roots.end());
+        roots.erase(std::unique(roots.begin(), roots.end()), roots.end());
         if (roots.size() > 1)
             findings.add(fmt::format("/skins/{}/joints", i), "joints below different roots", "SKIN_NO_COMMON_ROOT");
     }
