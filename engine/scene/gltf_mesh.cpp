@@ -11,7 +11,6 @@ namespace etalon::gltf {
 
 namespace {
 
-constexpr double kMaxBytes = 8.0 * (1 << 30);
 
 // Bytes that a primitive's own copy of its vertices and indices takes: primitives may share accessors, copies do not.
 double bytes_of(const Model& model, const tinygltf::Primitive& primitive)
@@ -67,10 +66,11 @@ class Meshes {
         double bytes = 0;
         for (const tinygltf::Mesh& mesh : source_.model.meshes)
             for (const tinygltf::Primitive& primitive : mesh.primitives) bytes += bytes_of(source_.model, primitive);
-        if (bytes > kMaxBytes)
+        if (bytes > double(source_.limits.vertex_bytes))
             throw fault(
                 "/meshes",
-                fmt::format("the vertices of all primitives need {:.3g} GiB; the limit is 8", bytes / (1 << 30)),
+                fmt::format("the vertices of all primitives need {:.3g} GiB; the limit is {:.3g}", bytes / (1 << 30),
+                            double(source_.limits.vertex_bytes) / (1 << 30)),
                 "give each primitive its own part of the vertices, or split the file");
     }
 
@@ -288,6 +288,7 @@ class Meshes {
             Material unlit = scene_.materials[own];
             unlit.name += " (unlit)";
             unlit.model = BsdfModel::unlit;
+            unlit.layers.reset();
             scene_.materials.push_back(std::move(unlit));
         }
         return copy->second;

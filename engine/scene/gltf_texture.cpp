@@ -14,7 +14,6 @@ namespace etalon::gltf {
 namespace {
 
 constexpr double kHuge = std::numeric_limits<float>::max();
-constexpr std::size_t kMaxImageBytes = std::size_t{1} << 30;  // of one coded image
 
 Wrap wrap_of(int value, const std::string& pointer)
 {
@@ -190,8 +189,10 @@ void Textures::decode_images()
         try {
             if (in.bytes && in.bytes->empty())
                 throw Error(Blame::input, "its buffer has no data in this file [BUFFER_MISSING_GLB_DATA]");
-            scene_.images[i] = in.bytes ? decode_texels(*in.bytes, in.name)
-                                        : decode_texels(read_uri(in.source(), source_.folder, kMaxImageBytes), in.name);
+            const Limits& limits = source_.limits;
+            scene_.images[i] =
+                in.bytes ? decode_texels(*in.bytes, in.name, limits)
+                         : decode_texels(read_uri(in.source(), source_.folder, limits.resource_bytes), in.name, limits);
         } catch (Error& error) {
             throw error.at(fmt::format("/images/{}", used_images_[i]));
         }

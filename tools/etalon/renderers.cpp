@@ -5,6 +5,7 @@
 #include "engine/base/error.h"
 #include "engine/reference/reference.h"
 #include "engine/render/render.h"
+#include "engine/scene/footprint.h"
 #include "engine/scene/knobs.h"
 #include "engine/scene/requirements.h"
 #include "etalon_version.h"
@@ -64,7 +65,9 @@ void describe(Film& film, const PosedScene& posed, const RenderSettings& setting
 
 }  // namespace
 
-Renderers::Renderers(const Arguments& arguments) : options_(device_options(arguments)) {}
+Renderers::Renderers(const Arguments& arguments)
+    : options_(device_options(arguments)), memory_(limits(arguments).memory)
+{}
 
 gpu::Device& Renderers::device()
 {
@@ -78,6 +81,7 @@ Drawn Renderers::draw(const std::string& scene_name, const PosedScene& posed, co
     const Requirements required = require(posed, settings);
     Film film;
     try {
+        check_memory(predict(posed, settings), memory_);
         switch (settings.renderer) {
             case Renderer::raster:
                 film = render_raster(device(), posed, required, settings, progress);

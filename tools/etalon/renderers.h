@@ -42,6 +42,7 @@ class Renderers {
     gpu::Device& device();
 
     gpu::DeviceOptions options_;
+    std::uint64_t memory_;  ///< bytes that may be needed in all
     std::optional<gpu::Device> device_;
 };
 

@@ -8,6 +8,7 @@
 
 #include "engine/base/error.h"
 #include "engine/scene/load.h"
+#include "tools/etalon/settings.h"
 #include "tools/etalon/terminal.h"
 
 namespace etalon::cli {
@@ -32,7 +33,8 @@ std::vector<std::byte> read_stdin()
 
 Scene open_scene(const std::string& argument, const Arguments& arguments)
 {
-    LoadOptions options{.strict = arguments.has("strict")};
+    check_picture(arguments);
+    LoadOptions options{.strict = arguments.has("strict"), .limits = limits(arguments)};
     if (const auto variant = arguments.text("variant")) options.variant = *variant;
     Scene scene =
         argument == "-" ? parse_gltf(read_stdin(), {}, "standard input", options) : load_scene(argument, options);

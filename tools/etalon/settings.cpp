@@ -3,16 +3,33 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cmath>
 
 #include "engine/base/error.h"
 #include "engine/scene/environment.h"
+#include "engine/scene/footprint.h"
 #include "tools/etalon/knob_options.h"
 
 namespace etalon::cli {
 namespace {
 
-// The largest image of the software device; also a sane bound on memory: 16384^2 float RGBA is 4 GiB.
-constexpr std::uint64_t kLongestSide = 16'384;
+/// "800M" as bytes: a number and a letter for its power of 1024, "iB" or "B" after it as one likes.
+std::optional<std::uint64_t> parse_bytes(std::string_view text)
+{
+    for (const std::string_view tail : {"iB", "B"})
+        if (text.ends_with(tail)) {
+            text.remove_suffix(tail.size());
+            break;
+        }
+    constexpr std::string_view kLetters = "KMGT";
+    const std::size_t letter = text.empty() ? std::string_view::npos : kLetters.find(text.back());
+    if (letter != std::string_view::npos) text.remove_suffix(1);
+    const std::optional<double> number = parse_number(text);
+    if (!number) return std::nullopt;
+    const double bytes = *number * std::pow(1024.0, letter == std::string_view::npos ? 0.0 : double(letter + 1));
+    if (!(bytes >= 1 && bytes < 1e18)) return std::nullopt;
+    return static_cast<std::uint64_t>(bytes);
+}
 
 std::optional<ivec2> parse_size(const Arguments& arguments)
 {
@@ -22,8 +39,9 @@ std::optional<ivec2> parse_size(const Arguments& arguments)
     const auto width = parts.size() == 2 ? parse_count(parts[0]) : std::nullopt;
     const auto height = parts.size() == 2 ? parse_count(parts[1]) : std::nullopt;
     if (!width || !height) refuse("size", *value, "WxH", "for example --size 1280x720");
-    if (*width < 1 || *height < 1 || *width > kLongestSide || *height > kLongestSide)
-        refuse("size", *value, fmt::format("a width and a height from 1 to {} pixels", kLongestSide));
+    const std::uint64_t most = limits(arguments).picture_side;
+    if (*width < 1 || *height < 1 || *width > most || *height > most)
+        refuse("size", *value, fmt::format("a width and a height from 1 to {} pixels", most));
     return ivec2(static_cast<int>(*width), static_cast<int>(*height));
 }
 
@@ -138,7 +156,28 @@ gpu::DeviceOptions device_options(const Arguments& arguments)
     if (arguments.has("require-device"))
         options.kind = arguments.choice("require-device") == 0 ? gpu::DeviceKind::cpu : gpu::DeviceKind::gpu;
     options.validate = arguments.has("validate");
+    if (arguments.text("memory")) options.memory_budget = limits(arguments).memory;
     return options;
+}
+
+Limits limits(const Arguments& arguments)
+{
+    constexpr LimitLevel kLevels[] = {LimitLevel::none, LimitLevel::standard, LimitLevel::strict};
+    const bool has = find_option(arguments.command(), "limits") != nullptr;
+    Limits limits(has ? kLevels[arguments.choice("limits")] : LimitLevel::standard);
+    if (const auto text = arguments.text("memory")) {
+        const auto bytes = parse_bytes(*text);
+        if (!bytes) refuse("memory", *text, "a number of bytes", "for example --memory 4G");
+        limits.memory = *bytes;
+    }
+    return limits;
+}
+
+void check_picture(const Arguments& arguments)
+{
+    if (find_option(arguments.command(), "spp") == nullptr) return;  // a command that draws nothing
+    if (const auto size = parse_size(arguments))
+        check_memory(predict(*size, render_settings(arguments)), limits(arguments).memory);
 }
 
 }  // namespace etalon::cli
