@@ -224,6 +224,62 @@ Command tradeoff_command()
     };
 }
 
+Command stability_command()
+{
+    return {
+        .name = "stability",
+        .summary = "Find out where a scene's picture holds under harmless changes, and where it breaks",
+        .description =
+            "Changes SCENE in ways that must leave its picture alone (scale, distance from the origin, order of "
+            "triangles, brightness against exposure, …), by more and more, and compares: path-traced pictures by "
+            "statistics, rasterized ones within the derived budget. Says for each change up to what size the picture "
+            "holds and where it breaks.",
+        .argument = "SCENE",
+        .least = 1,
+        .most = 1,
+        .options = together(
+            {{{.name = "output",
+               .letter = 'o',
+               .argument = "FOLDER",
+               .help = "Where the report goes; out/NAME-stability when absent",
+               .completes = Completes::folder,
+               .heading = "Output"},
+              {.name = "budget",
+               .argument = "SECONDS",
+               .help = "How long to try",
+               .standard = "60",
+               .heading = "Measuring"},
+              {.name = "quick", .help = "At most 15 seconds, and only the promised ranges", .heading = "Measuring"},
+              {.name = "renderer",
+               .letter = 'r',
+               .argument = "NAME",
+               .help = "Which renderer",
+               .standard = "both",
+               .choices = {"both", "raster", "path"},
+               .heading = "Measuring"},
+              {.name = "false-alarm",
+               .argument = "P",
+               .help = "How often a scene that holds would be said to break, over the whole table",
+               .standard = "0.001",
+               .heading = "Measuring"}},
+             view_rows(),
+             light_rows(),
+             shading_rows(),
+             sampling_rows(),
+             device_rows(),
+             load_rows(),
+             json_rows(),
+             progress_rows()}),
+        .examples = {{"etalon stability chair.glb",
+                      "A minute's trial, and the page out/chair-stability/stability.html"},
+                     {"etalon stability builtin:cornell --quick", "The promised ranges alone"}},
+        .exit_codes =
+            "0 every promised range holds; 1 one breaks; 2 bad usage or input; 3 the machine cannot; 130 "
+            "interrupted",
+        .run = stability,
+    };
+}
+
 Command explain_command()
 {
     return {
@@ -360,9 +416,9 @@ Command man_command()
 
 const std::vector<Command>& commands()
 {
-    static const std::vector<Command> all = {render_command(),   compare_command(),    diff_command(),
-                                             tradeoff_command(), explain_command(),    info_command(),
-                                             view_command(),     completion_command(), man_command()};
+    static const std::vector<Command> all = {
+        render_command(),  compare_command(), diff_command(), tradeoff_command(),   stability_command(),
+        explain_command(), info_command(),    view_command(), completion_command(), man_command()};
     return all;
 }
 

@@ -57,6 +57,7 @@ inline constexpr std::uint64_t kViewSamples = 4096;  ///< per pixel, where `view
 int render(const Arguments& arguments);
 int compare(const Arguments& arguments);
 int tradeoff(const Arguments& arguments);
+int stability(const Arguments& arguments);
 int diff(const Arguments& arguments);
 int explain(const Arguments& arguments);
 int info(const Arguments& arguments);
