@@ -95,12 +95,12 @@ class Extension {
 
 class Layers {
  public:
-    Layers(const tinygltf::Material& in, const std::string& pointer, const Material& base, Textures& textures,
-           Scene& scene)
-        : in_(in), pointer_(pointer), textures_(textures), scene_(scene)
+    Layers(const tinygltf::Material& in, const std::string& pointer, const Material& base, bool animated,
+           Textures& textures, Scene& scene)
+        : in_(in), pointer_(pointer), animated_(animated), textures_(textures), scene_(scene)
     {
         // What only the dielectric part of a surface has does not show on a metal.
-        const bool dielectric = base.metallic < 1 || base.metallic_roughness_texture.present();
+        const bool dielectric = animated || base.metallic < 1 || base.metallic_roughness_texture.present();
         ior(dielectric);
         specular(dielectric);
         transmission(dielectric);
@@ -121,6 +121,9 @@ class Layers {
  private:
     Extension extension(const char* name) { return {in_, pointer_, name, textures_, scene_}; }
 
+    // Does a layer of this strength show nothing, now and later?
+    bool is_inert(const Extension& in, bool none) const { return none && !(animated_ && in.present()); }
+
     void ior(bool shows)
     {
         Extension in = extension("KHR_materials_ior");
@@ -129,7 +132,7 @@ class Layers {
             in.warn("ior", fmt::format("{} is taken as 1 [VALUE_NOT_IN_RANGE]", value));
             value = 1;
         }
-        if (!shows || value == 1.5) return;
+        if (!shows || is_inert(in, value == 1.5)) return;
         out_.ior = value;
         changes_ = true;
     }
@@ -141,10 +144,10 @@ class Layers {
         const dvec3 color = in.color("specularColorFactor", 1, kHuge);
         if (!shows) return;
         out_.specular = factor;
-        if (factor > 0) {
+        if (!is_inert(in, factor == 0)) {
             out_.specular_color = color;
             out_.specular_texture = in.texture("specularTexture");
-            if (color != dvec3(0)) out_.specular_color_texture = in.texture("specularColorTexture");
+            if (!is_inert(in, color == dvec3(0))) out_.specular_color_texture = in.texture("specularColorTexture");
         }
         changes_ = changes_ || out_.specular != 1 || out_.specular_color != dvec3(1) ||
                    out_.specular_texture.present() || out_.specular_color_texture.present();
@@ -154,7 +157,7 @@ class Layers {
     {
         Extension in = extension("KHR_materials_transmission");
         const double factor = in.factor("transmissionFactor", 0);
-        if (!shows || factor == 0) return;
+        if (!shows || is_inert(in, factor == 0)) return;
         out_.transmission = factor;
         out_.transmission_texture = in.texture("transmissionTexture");
         changes_ = true;
@@ -173,7 +176,7 @@ class Layers {
             distance = kNever;
         }
         const double dispersion = extension("KHR_materials_dispersion").real("dispersion", 0, 0);
-        if (out_.transmission == 0 || thickness == 0) return;
+        if (is_inert(in, out_.transmission == 0 || thickness == 0)) return;
         out_.thickness = thickness;
         out_.attenuation_color = color;
         out_.attenuation_distance = distance;
@@ -186,11 +189,12 @@ class Layers {
         Extension in = extension("KHR_materials_diffuse_transmission");
         const double factor = in.factor("diffuseTransmissionFactor", 0);
         const dvec3 color = in.color("diffuseTransmissionColorFactor", 1);
-        if (!shows || factor == 0) return;
+        if (!shows || is_inert(in, factor == 0)) return;
         out_.diffuse_transmission = factor;
         out_.diffuse_transmission_color = color;
         out_.diffuse_transmission_texture = in.texture("diffuseTransmissionTexture");
-        if (color != dvec3(0)) out_.diffuse_transmission_color_texture = in.texture("diffuseTransmissionColorTexture");
+        if (!is_inert(in, color == dvec3(0)))
+            out_.diffuse_transmission_color_texture = in.texture("diffuseTransmissionColorTexture");
         changes_ = true;
     }
 
@@ -199,11 +203,11 @@ class Layers {
         Extension in = extension("KHR_materials_sheen");
         const dvec3 color = in.color("sheenColorFactor", 0);
         const double roughness = in.factor("sheenRoughnessFactor", 0);
-        if (color == dvec3(0)) return;
+        if (is_inert(in, color == dvec3(0))) return;
         out_.sheen_color = color;
         out_.sheen_roughness = roughness;
         out_.sheen_color_texture = in.texture("sheenColorTexture");
-        if (roughness > 0) out_.sheen_roughness_texture = in.texture("sheenRoughnessTexture");
+        if (!is_inert(in, roughness == 0)) out_.sheen_roughness_texture = in.texture("sheenRoughnessTexture");
         changes_ = true;
     }
 
@@ -213,12 +217,12 @@ class Layers {
         const double factor = in.factor("clearcoatFactor", 0);
         const double roughness = in.factor("clearcoatRoughnessFactor", 0);
         const double scale = in.normal_scale("clearcoatNormalTexture");
-        if (factor == 0) return;
+        if (is_inert(in, factor == 0)) return;
         out_.clearcoat = factor;
         out_.clearcoat_roughness = roughness;
         out_.clearcoat_normal_scale = scale;
         out_.clearcoat_texture = in.texture("clearcoatTexture");
-        if (roughness > 0) out_.clearcoat_roughness_texture = in.texture("clearcoatRoughnessTexture");
+        if (!is_inert(in, roughness == 0)) out_.clearcoat_roughness_texture = in.texture("clearcoatRoughnessTexture");
         out_.clearcoat_normal_texture = in.texture("clearcoatNormalTexture");
         changes_ = true;
     }
@@ -230,9 +234,9 @@ class Layers {
         const double ior = in.real("iridescenceIor", 1.3, 1);
         const double thinnest = in.real("iridescenceThicknessMinimum", 100, 0);
         const double thickest = in.real("iridescenceThicknessMaximum", 400, 0);
-        if (factor == 0) return;
+        if (is_inert(in, factor == 0)) return;
         const TextureUse thickness = in.texture("iridescenceThicknessTexture");
-        if (thickest == 0 && (thinnest == 0 || !thickness.present())) return;  // no film
+        if (is_inert(in, thickest == 0 && (thinnest == 0 || !thickness.present()))) return;  // no film
         out_.iridescence = factor;
         out_.iridescence_ior = ior;
         out_.iridescence_thickness_min = thinnest;
@@ -247,7 +251,7 @@ class Layers {
         Extension in = extension("KHR_materials_anisotropy");
         const double strength = in.factor("anisotropyStrength", 0);
         const double rotation = in.real("anisotropyRotation", 0);
-        if (strength == 0) return;
+        if (is_inert(in, strength == 0)) return;
         out_.anisotropy = strength;
         out_.anisotropy_rotation = rotation;
         out_.anisotropy_texture = in.texture("anisotropyTexture");
@@ -256,6 +260,7 @@ class Layers {
 
     const tinygltf::Material& in_;
     const std::string& pointer_;
+    bool animated_;
     Textures& textures_;
     Scene& scene_;
     MaterialLayers out_;
@@ -282,9 +287,9 @@ bool apply_specular_glossiness(const tinygltf::Material& in, const std::string& 
 }
 
 std::optional<MaterialLayers> read_layers(const tinygltf::Material& in, const std::string& pointer,
-                                          const Material& base, Textures& textures, Scene& scene)
+                                          const Material& base, bool animated, Textures& textures, Scene& scene)
 {
-    return Layers(in, pointer, base, textures, scene).result();
+    return Layers(in, pointer, base, animated, textures, scene).result();
 }
 
 void warn_of_excluded_layers(const tinygltf::Material& in, const std::string& pointer, Scene& scene)

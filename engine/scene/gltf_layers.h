@@ -14,9 +14,9 @@ bool apply_specular_glossiness(const tinygltf::Material& in, const std::string& 
                                Scene& scene, Material& out);
 
 /// The layers of a metallic-roughness material `base`; nothing where no extension changes the picture. Textures of
-/// layers that show nothing are not asked for.
+/// layers that show nothing are not asked for, except where the material is animated: they may show later.
 std::optional<MaterialLayers> read_layers(const tinygltf::Material& in, const std::string& pointer,
-                                          const Material& base, Textures& textures, Scene& scene);
+                                          const Material& base, bool animated, Textures& textures, Scene& scene);
 
 /// Extensions that the file gives to a material that must not have them: one warning each.
 void warn_of_excluded_layers(const tinygltf::Material& in, const std::string& pointer, Scene& scene);

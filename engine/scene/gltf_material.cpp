@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <limits>
 
 #include "engine/scene/gltf_import.h"
@@ -15,8 +16,10 @@ constexpr double kHuge = std::numeric_limits<float>::max();
 
 class Materials {
  public:
-    Materials(const Source& source, Scene& scene) : source_(source), scene_(scene), textures_(source, scene)
+    Materials(const Source& source, Scene& scene)
+        : source_(source), scene_(scene), textures_(source, scene), animated_(source.model.materials.size())
     {
+        find_animated();
         for (std::size_t i = 0; i < source_.model.materials.size(); ++i) convert(i);
         textures_.decode_images();
     }
@@ -39,19 +42,37 @@ class Materials {
         const bool lit = out.model != BsdfModel::unlit;
         if (!lit || !apply_specular_glossiness(in, pointer, textures_, scene_, out))
             metallic_roughness(in.pbrMetallicRoughness, pointer + "/pbrMetallicRoughness", out);
+        const bool animated = animated_[index];
         // An unlit or non-emissive material decodes no texture that it does not show.
         if (lit) {
             out.normal_texture = textures_.use(in.normalTexture, pointer + "/normalTexture");
             out.occlusion_texture = textures_.use(in.occlusionTexture, pointer + "/occlusionTexture");
-            if (out.emission != dvec3(0))
+            if (out.emission != dvec3(0) || animated)
                 out.emissive_texture = textures_.use(in.emissiveTexture, pointer + "/emissiveTexture");
         }
         apply_material_extras(in.extras, pointer, out);
         if (out.model == BsdfModel::metallic_roughness)
-            out.layers = read_layers(in, pointer, out, textures_, scene_);
+            out.layers = read_layers(in, pointer, out, animated, textures_, scene_);
         else if (out.model == BsdfModel::unlit || out.model == BsdfModel::specular_glossiness)
             warn_of_excluded_layers(in, pointer, scene_);
         scene_.materials.push_back(std::move(out));
+    }
+
+    // Notes the materials in which some channel of KHR_animation_pointer moves something.
+    void find_animated()
+    {
+        constexpr std::string_view kMaterials = "/materials/";
+        for (const tinygltf::Animation& animation : source_.model.animations)
+            for (const tinygltf::AnimationChannel& channel : animation.channels) {
+                const Value* extension = member(channel.target_extensions, "KHR_animation_pointer");
+                const Value* text = extension == nullptr ? nullptr : member(*extension, "pointer");
+                if (text == nullptr || !text->IsString()) continue;
+                const auto& pointer = text->Get<std::string>();
+                if (!pointer.starts_with(kMaterials)) continue;
+                std::size_t index = animated_.size();
+                std::from_chars(pointer.data() + kMaterials.size(), pointer.data() + pointer.size(), index);
+                if (index < animated_.size()) animated_[index] = true;
+            }
     }
 
     void metallic_roughness(const tinygltf::PbrMetallicRoughness& in, const std::string& pointer, Material& out)
@@ -118,6 +139,7 @@ class Materials {
     const Source& source_;
     Scene& scene_;
     Textures textures_;
+    std::vector<bool> animated_;  // of each material
 };
 
 }  // namespace

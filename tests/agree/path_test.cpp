@@ -56,7 +56,7 @@ std::vector<Subject> builtin_subjects()
             {"volume", {.spp = 256, .max_depth = 8}, 0.02},
             {"iridescence"},
             {"anisotropy"},
-            {"dispersion", {.spp = 256, .max_depth = 8}, 0.02},
+            {"dispersion", {.spp = 512, .max_depth = 8}, 0.03},
             {"diffuse-transmission"},
             {"specular-glossiness"}};
 }

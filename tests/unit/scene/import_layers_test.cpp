@@ -124,6 +124,23 @@ TEST(ImportLayers, are_left_out_where_they_change_nothing_and_decode_nothing)
     }
 }
 
+TEST(ImportLayers, of_an_animated_material_are_kept_since_they_may_show_later)
+{
+    GltfWriter file = file_with(
+        R"({"emissiveTexture":{"index":1},"extensions":{"KHR_materials_clearcoat":{"clearcoatTexture":{"index":0}}}})");
+    const int times = file.add_floats({0, 1}, 1);
+    const int strengths = file.add_floats({0, 1}, 1);
+    file.add("animations", fmt::format(R"({{"channels":[{{"sampler":0,"target":{{"path":"pointer","extensions":{{
+        "KHR_animation_pointer":{{"pointer":"/materials/0/extensions/KHR_materials_clearcoat/clearcoatFactor"}}}}}}}}],
+        "samplers":[{{"input":{},"output":{}}}]}})",
+                                       times, strengths));
+    const Material material = file.load().materials.at(0);
+    ASSERT_TRUE(material.layers);
+    EXPECT_EQ(material.layers->clearcoat, 0);
+    EXPECT_TRUE(material.layers->clearcoat_texture.present());
+    EXPECT_TRUE(material.emissive_texture.present());
+}
+
 TEST(ImportLayers, of_the_dielectric_part_do_not_show_on_a_metal)
 {
     const auto with_base = [](const std::string& base) {
