@@ -12,7 +12,7 @@ namespace {
 
 struct Required {
     std::string_view objects;
-    std::initializer_list<std::string_view> properties;
+    std::vector<std::string_view> properties;  // owned: an initializer_list of a table would dangle
 };
 
 // What a reader cannot do without and the other checks do not miss.
@@ -67,7 +67,7 @@ constexpr std::array kNotEmpty = {
 // Where an extension's object may stand; Texture: in what refers to a texture.
 struct Owners {
     std::string_view extension;
-    std::initializer_list<std::string_view> places;
+    std::vector<std::string_view> places;
 };
 constexpr std::string_view kMaterial = "/materials/*";
 constexpr std::string_view kTextureInfo = "Texture";
