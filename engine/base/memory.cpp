@@ -64,6 +64,15 @@ std::uint64_t memory_of_machine()
     return std::min(bytes, control_group_limit());
 }
 
+std::uint64_t address_space_left()
+{
+    rlimit space{};
+    if (getrlimit(RLIMIT_AS, &space) != 0 || space.rlim_cur == RLIM_INFINITY) return ~std::uint64_t{0};
+    std::uint64_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    return space.rlim_cur - std::min<std::uint64_t>(space.rlim_cur, pages * page_bytes());
+}
+
 std::uint64_t memory_held()
 {
     std::uint64_t mapped = 0, resident = 0;

@@ -7,6 +7,9 @@ namespace etalon {
 /// of those above it) or the limit of its address space says so.
 std::uint64_t memory_of_machine();
 
+/// Bytes of address space that this process may still take; all there can be where it has no limit (ulimit -v).
+std::uint64_t address_space_left();
+
 /// Bytes that this process holds now (resident) and the most that it ever held.
 std::uint64_t memory_held();
 std::uint64_t memory_peak();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <thread>
 
 #include "engine/base/error.h"
 #include "engine/base/memory.h"
@@ -26,6 +27,22 @@ namespace {
 std::uint64_t default_budget(const DeviceReport& report)
 {
     return (report.kind == DeviceKind::cpu ? memory_of_machine() : report.memory) / 4 * 3;
+}
+
+/// A software device's threads and compiler take address space, and lavapipe 22.3.6 crashes where they get none:
+/// measured with 2 processors, whose threads reserve 128 MiB each, 620 MiB beyond what it has when loaded were too few,
+/// 825 were enough.
+void check_address_space(const DeviceReport& report)
+{
+    if (report.kind != DeviceKind::cpu) return;
+    constexpr std::uint64_t kMiB = 1 << 20;
+    const std::uint64_t need = (564 + 128 * std::uint64_t{std::max(1u, std::thread::hardware_concurrency())}) * kMiB;
+    const std::uint64_t have = address_space_left();
+    if (have >= need) return;
+    throw Error(Blame::machine,
+                fmt::format("the device {} needs about {} MiB of address space; this process may have {} more",
+                            report.name, need / kMiB, have / kMiB),
+                "raise the limit (ulimit -v), or use --renderer reference");
 }
 
 /// Required features, and those optional ones that something in this project can use.
@@ -90,6 +107,7 @@ DeviceState::DeviceState(const DeviceOptions& options) : instance(options)
 
 void DeviceState::create(const Candidate& candidate)
 {
+    check_address_space(candidate.report);
     report = candidate.report;
     physical = candidate.physical;
     queue_family = candidate.queue_family;
