@@ -106,11 +106,11 @@ class Primitives {
     void indices(const json& index, const Place& at) const
     {
         const json& accessor = accessor_of(index);
-        const auto type = index_at(accessor, "componentType");
+        const Unsigned type = index_at(accessor, "componentType").value_or(0);
         if (text_at(accessor, "type") != "SCALAR" || (type != 5121u && type != 5123u && type != kUnsignedInt))
             throw fault(at.pointer(),
                         fmt::format("indices of type {}, {} [MESH_PRIMITIVE_INDICES_ACCESSOR_INVALID_FORMAT]",
-                                    text_at(accessor, "type"), type.value_or(0)));
+                                    text_at(accessor, "type"), type));
     }
 
     void texture_coordinates(const json& primitive, const Place& place)
