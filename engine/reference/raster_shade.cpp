@@ -160,10 +160,10 @@ bool is_gltf_model(const Material& material)
     return material.model == BsdfModel::metallic_roughness || material.model == BsdfModel::specular_glossiness;
 }
 
-RasterShares shares_for(const Scene& scene, bool blinn_phong, unsigned threads)
+RasterShares shares_for(const std::vector<Material>& materials, bool blinn_phong, unsigned threads)
 {
     bool ggx = false, sheen = false;
-    for (const Material& material : scene.materials) {
+    for (const Material& material : materials) {
         if (blinn_phong || !is_gltf_model(material)) continue;
         ggx = true;
         sheen |= material.layers && material.layers->sheen_color != dvec3(0);
@@ -177,7 +177,7 @@ RasterShader::RasterShader(const World& world, const RenderSettings& settings)
     : world_(&world),
       camera_(world.posed->view),
       environment_(world.posed->environment, settings.threads),
-      shares_(shares_for(*world.posed->scene, settings.shading == Shading::blinn_phong, settings.threads)),
+      shares_(shares_for(world.posed->materials(), settings.shading == Shading::blinn_phong, settings.threads)),
       emitters_(raster_emitters(world)),
       blinn_phong_(settings.shading == Shading::blinn_phong),
       background_(settings.background),

@@ -152,22 +152,22 @@ shared::LightRecord pack(const PosedLight& posed, const dvec3& eye)
             .spot_offset = static_cast<float>(-cos_outer * scale)};
 }
 
-std::vector<shared::MaterialRecord> pack_materials(const Scene& scene)
+std::vector<shared::MaterialRecord> pack_materials(std::span<const Material> materials)
 {
     std::vector<shared::MaterialRecord> records;
-    records.reserve(scene.materials.size());
+    records.reserve(materials.size());
     shared::uint layer_count = 0;
-    for (const Material& material : scene.materials) {
+    for (const Material& material : materials) {
         records.push_back(pack(material));
         if (material.layers) records.back().layers = layer_count++;
     }
     return records;
 }
 
-std::vector<shared::LayerRecord> pack_layers(const Scene& scene)
+std::vector<shared::LayerRecord> pack_layers(std::span<const Material> materials)
 {
     std::vector<shared::LayerRecord> records;
-    for (const Material& material : scene.materials)
+    for (const Material& material : materials)
         if (material.layers) records.push_back(pack(*material.layers));
     return records;
 }

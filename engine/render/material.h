@@ -1,4 +1,5 @@
 #pragma once
+#include <span>
 #include <vector>
 
 #include "engine/scene/pose.h"
@@ -16,11 +17,12 @@ shared::MaterialRecord pack(const Material& material);
 /// The device's form of a punctual light relative to `eye` (SH-22).
 shared::LightRecord pack(const PosedLight& light, const dvec3& eye);
 
-/// One record per Scene material, in its order, so that Scene indices stay valid on the device.
-std::vector<shared::MaterialRecord> pack_materials(const Scene& scene);
+/// One record per material of a scene (PosedScene::materials), in their order, so that Scene indices stay valid on the
+/// device.
+std::vector<shared::MaterialRecord> pack_materials(std::span<const Material> materials);
 
 /// The layers of those materials that have any, in the order that MaterialRecord::layers counts.
-std::vector<shared::LayerRecord> pack_layers(const Scene& scene);
+std::vector<shared::LayerRecord> pack_layers(std::span<const Material> materials);
 
 /// One record per posed light that gives any light: zero intensity or zero colour is left out.
 std::vector<shared::LightRecord> pack_lights(const PosedScene& posed);

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstring>
+#include <span>
 #include <vector>
 
 #include "engine/scene/scene.h"
@@ -21,6 +22,6 @@ std::vector<uvec4> padded(const std::vector<Record>& records)
 
 /// The materials as kernels read them: MaterialRecords, then LayerRecords, each material with the texel of its own (or
 /// of one that changes nothing) in MaterialRecord::layers.
-std::vector<uvec4> path_materials(const Scene& scene);
+std::vector<uvec4> path_materials(std::span<const Material> scene_materials);
 
 }  // namespace etalon

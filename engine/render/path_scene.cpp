@@ -100,7 +100,7 @@ PathScene make_path_scene(gpu::Device& device, const PosedScene& posed, const Re
     out.node_list = upload_list(device, geometry.bvh.nodes, "BVH nodes");
     out.primitive_list = upload_list(device, geometry.primitives, "primitives");
     out.attributes = upload_list(device, geometry.attributes, "attributes");
-    out.materials = upload_list(device, path_materials(*posed.scene), "materials");
+    out.materials = upload_list(device, path_materials(posed.materials()), "materials");
     std::vector<vec4> albedo;
     if (out.features.albedo()) albedo = make_albedo_cells(out.features.sheen, settings.threads);
     out.albedo = upload_list(device, albedo, "directional albedo");
