@@ -200,7 +200,7 @@ std::map<std::string, Bytes> every_kind()
                                         {"EXR, tiles", samples::tiled_exr(false)}};
     struct Kind {
         std::uint8_t color;
-        std::initializer_list<std::uint8_t> depths;
+        std::vector<std::uint8_t> depths;
         std::size_t channels;
     };
     for (const auto& [color, depths, channels] :
