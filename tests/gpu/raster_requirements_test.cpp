@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <bitset>
 #include <string>
 
@@ -32,16 +31,10 @@ bool same(const Film& a, const Film& b)
     return a.mean == b.mean && a.alpha == b.alpha && a.aovs.depth == b.aovs.depth && a.aovs.uv == b.aovs.uv;
 }
 
-/// Every built-in scene, those that show one material layer each among them.
 std::vector<Scene> all_scenes()
 {
     std::vector<Scene> scenes;
-    std::vector<std::string> names;
-    for (const BuiltinScene& builtin : builtin_scenes()) names.emplace_back(builtin.name);
-    for (const char* layer : {"specular", "clearcoat", "sheen", "transmission", "volume", "iridescence", "anisotropy",
-                              "dispersion", "diffuse-transmission", "specular-glossiness"})
-        if (std::find(names.begin(), names.end(), layer) == names.end()) names.emplace_back(layer);
-    for (const std::string& name : names) scenes.push_back(make_builtin(name));
+    for (const BuiltinScene& builtin : builtin_scenes()) scenes.push_back(make_builtin(builtin.name));
     return scenes;
 }
 
