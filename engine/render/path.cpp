@@ -19,6 +19,8 @@ using shared::PathPush;
 /// caches.
 constexpr std::uint32_t kWaveCapacity = 1u << 17;
 constexpr std::uint32_t kSmallestWave = 1u << 12;
+/// Of a picture's first wave, before the scene's speed is known: a stop must not wait for long even where it is slow.
+constexpr std::uint32_t kFirstWave = 1u << 14;
 /// Device time that a step aims at: far below any watchdog, short enough that stopping feels immediate.
 constexpr double kStepSeconds = 0.05;
 /// Segments traced by one submission at most, so that a deep path does not make a long one.
@@ -45,7 +47,7 @@ struct PathTracer::State {
     gpu::Buffer aovs;
     std::vector<PathBand> bands;
     std::uint32_t width = 0, height = 0;
-    std::uint32_t wave = kWaveCapacity / 2;  ///< paths of the next wave, adapted to the scene's speed
+    std::uint32_t wave = kFirstWave;  ///< paths of the next wave, adapted to the scene's speed
 
     PathSamples total{.sum = {1, 1}};  ///< of completed blocks
     std::uint64_t first_of_block = 0;  ///< sample number
@@ -55,6 +57,8 @@ struct PathTracer::State {
     std::size_t band = 0;       ///< where the pass at hand stands
     std::uint32_t next_slot = 0;
     std::uint64_t slots_done = 0;
+
+    std::vector<bool> unreached;  ///< pixels without samples, after a stop in the first pass; else empty
 
     bool timing = false;
     std::vector<KernelTime> times;
@@ -75,6 +79,7 @@ struct PathTracer::State {
     void begin_pass(std::uint64_t most_samples);
     void run_wave(PathBand& at, std::uint32_t count);
     void end_pass();
+    void mark_unreached();
     void trace_from_camera(Commands& commands, PathBand& at, const PathPush& push);
     void bounce(Commands& commands, PathBand& at, PathPush push);
     void launch(Commands& commands, PathBand& at, const gpu::ComputePipeline& kernel, const PathPush& push,
@@ -268,6 +273,22 @@ void PathTracer::State::end_pass()
     in_pass = 0;
 }
 
+/// Which pixels the pass at hand has not come to, by the order of generate.comp: columns of strips of 8 rows.
+void PathTracer::State::mark_unreached()
+{
+    unreached.assign(std::size_t{width} * height, false);
+    for (std::size_t b = band; b < bands.size(); ++b) {
+        const PathBand& at = bands[b];
+        const std::uint32_t rows = at.pixel_count / width;
+        for (std::uint32_t k = b == band ? next_slot : 0; k < at.pixel_count; ++k) {
+            const std::uint32_t strip = k / (8 * width);
+            const std::uint32_t within = k - strip * 8 * width;
+            const std::uint32_t tall = std::min(8u, rows - strip * 8);
+            unreached[at.first_pixel + (strip * 8 + within % tall) * width + within / tall] = true;
+        }
+    }
+}
+
 /// Adds the block on the device to `sum`; samples that were not finite to `lost`, paths cut by the depth limit to
 /// `cut`.
 void PathTracer::State::read_block(FilmSum& sum, std::uint64_t& lost, std::uint64_t& cut) const
@@ -279,6 +300,7 @@ void PathTracer::State::read_block(FilmSum& sum, std::uint64_t& lost, std::uint6
         const std::vector<vec4> deviations = gpu::read_back<vec4>(*device, at.m2, at.pixel_count);
         for (std::size_t i = 0; i < at.pixel_count; ++i) {
             const std::size_t pixel = at.first_pixel + i;
+            if (!unreached.empty() && unreached[pixel]) continue;
             const std::uint32_t counts = std::bit_cast<std::uint32_t>(deviations[i].w);
             const std::uint32_t bad = counts & 0xffffu;
             lost += bad;
@@ -373,6 +395,21 @@ void PathTracer::resume(const PathSamples& kept)
     state_->total = kept;
     state_->first_of_block = kept.sum.samples();
     state_->in_block = state_->in_pass = 0;
+    state_->unreached.clear();
+}
+
+void PathTracer::stop_pass()
+{
+    State& s = *state_;
+    if (s.in_pass == 0) return;
+    if (samples() > 0) {
+        s.in_pass = 0;
+        return;
+    }
+    const bool all_reached = s.bands.size() == 1 && s.next_slot >= s.bands[0].pixel_count;
+    if (!all_reached) s.mark_unreached();
+    s.in_pass = all_reached ? s.next_slot / s.bands[0].pixel_count : 1;
+    s.end_pass();
 }
 
 bool PathTracer::step(std::uint64_t most_samples)
@@ -420,6 +457,8 @@ Film PathTracer::film()
     film.nonfinite = all.nonfinite;
     film.truncated = all.truncated;
     if (s.wants_aovs) s.read_aovs(film);
+    if (!s.unreached.empty())
+        film.metadata["pixels.unreached"] = std::to_string(std::count(s.unreached.begin(), s.unreached.end(), true));
     return film;
 }
 

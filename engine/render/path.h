@@ -48,11 +48,16 @@ class PathTracer {
     /// Does a bounded piece of the current pass, about 50 ms of device time; a pass is one sample in every pixel, or
     /// more of small pictures, but not beyond `most_samples` in all. True when it completed the pass.
     bool step(std::uint64_t most_samples);
+    /// Gives the pass at hand up, where it is not the first. The first one ends where it stands: with as many samples
+    /// as all pixels have, or with one where pixels were reached and none in the others. Then film() or start() alone
+    /// may follow.
+    void stop_pass();
     /// Samples per pixel of completed passes.
     std::uint64_t samples() const;
     /// Of the pass at hand, 0 … 1.
     double pass_fraction() const;
-    /// What completed passes measured. AOVs where settings ask for them.
+    /// What completed passes measured. AOVs where settings ask for them. Pixels that a stopped first pass did not reach
+    /// are 0 with alpha 0; their number is in metadata "pixels.unreached", which is there only then.
     Film film();
     /// What outlives the device, and can go on in another tracer of the same scene, settings and view, to the same
     /// bits.

@@ -20,8 +20,9 @@ void trace(PathTracer& tracer, const RenderSettings& settings, const Progress& p
     auto last_report = std::chrono::steady_clock::now();
     ProgressUpdate update;
     update.stage = "path tracing";
-    // Stopped before the first pass is done, there would be nothing to show: that one is finished.
-    while (tracer.samples() < settings.spp && !(progress.stopped() && tracer.samples() > 0)) {
+    // Stopped at once, there would be nothing to show: one step is made.
+    const auto has_something = [&] { return tracer.samples() > 0 || tracer.pass_fraction() > 0; };
+    while (tracer.samples() < settings.spp && !(progress.stopped() && has_something())) {
         const bool passed = tracer.step(settings.spp);
         const double done = double(tracer.samples()) + tracer.pass_fraction();
         update.fraction = done / double(settings.spp);
@@ -33,6 +34,7 @@ void trace(PathTracer& tracer, const RenderSettings& settings, const Progress& p
         }
         progress.report(update);
     }
+    if (tracer.samples() == 0) tracer.stop_pass();
 }
 
 }  // namespace

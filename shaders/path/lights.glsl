@@ -17,25 +17,21 @@ struct LightSample {
 
 const LightSample kNoLight = LightSample(vec3(0.0, 0.0, 1.0), vec3(0.0), true, vec3(0.0), 0.0);
 
-// (SH-22)
-LightSample sample_punctual(vec3 from, uint pick)
+// (SH-22) What light `index` sends to a point.
+LightSample punctual_light(vec3 from, uint index)
 {
-    uint index;
-    uint low;
-    umulExtended(pick, frame.light_count, index, low);
     vec4 a = uintBitsToFloat(imageLoad(lights, int(4u * index)));
     vec4 b = uintBitsToFloat(imageLoad(lights, int(4u * index + 1u)));
     vec4 c = uintBitsToFloat(imageLoad(lights, int(4u * index + 2u)));
     float spot_offset = uintBitsToFloat(imageLoad(lights, int(4u * index + 3u)).x);
     uint type = floatBitsToUint(a.w);
-    float count = float(frame.light_count * frame.strategy_count);
-    if (type == kLightDirectional) return LightSample(-c.xyz, vec3(0.0), true, a.xyz * count, 0.0);
+    if (type == kLightDirectional) return LightSample(-c.xyz, vec3(0.0), true, a.xyz, 0.0);
 
     vec3 towards = b.xyz - from;
     float distance = robust_length(towards);
     if (!(distance > 0.0)) return kNoLight;
     vec3 wi = towards / distance;
-    vec3 value = a.xyz * count / distance / distance;
+    vec3 value = a.xyz / distance / distance;
     if (type == kLightSpot) {
         float cone = clamp(dot(c.xyz, -wi) * c.w + spot_offset, 0.0, 1.0);
         value *= cone * cone;
@@ -45,6 +41,38 @@ LightSample sample_punctual(vec3 from, uint pick)
         value *= max(min(1.0 - (ratio * ratio) * (ratio * ratio), 1.0), 0.0);
     }
     return LightSample(wi, b.xyz, false, value, 0.0);
+}
+
+// Of up to this many punctual lights each is weighed; of more, so many neighbours in their list, beginning anywhere.
+const uint kWeighedLights = 16u;
+
+// One punctual light, by what each would send to a surface of normal n if nothing were in the way (Talbot et al. 2005). Light
+// from behind keeps a little weight: some surfaces transmit.
+LightSample sample_punctual(vec3 from, vec3 n, uint pick, float u)
+{
+    uint first;
+    uint low;
+    umulExtended(pick, frame.light_count, first, low);
+    uint weighed = min(frame.light_count, kWeighedLights);
+    LightSample chosen = kNoLight;
+    float chosen_weight = 0.0;
+    float sum = 0.0;
+    for (uint i = 0u; i < weighed; ++i) {
+        uint index = first + i < frame.light_count ? first + i : first + i - frame.light_count;
+        LightSample light = punctual_light(from, index);
+        float cosine = dot(n, light.wi);
+        float weight = min(max_component(light.value), 1e30) * (max(cosine, 0.0) + 0.05);
+        sum += weight;
+        // A reservoir of one, fed by a single number: what is left of it is uniform again.
+        float chance = sum > 0.0 ? weight / sum : 0.0;
+        bool take = u < chance;
+        u = take ? u / max(chance, 1e-20) : (u - chance) / max(1.0 - chance, 1e-20);
+        chosen_weight = take ? weight : chosen_weight;
+        if (take) chosen = light;
+    }
+    float scale = float(frame.light_count) / float(weighed) * float(frame.strategy_count);
+    chosen.value *= chosen_weight > 0.0 ? scale * (sum / chosen_weight) : 0.0;
+    return chosen;
 }
 
 // Radiance that an emitter of normal ng sends towards wo from a point of it, on average over its coverage.
@@ -133,7 +161,7 @@ bool samples_emitters() { return kEmission && frame.emitter_count > 0u; }
 bool samples_punctual() { return kPunctual && frame.light_count > 0u; }
 bool samples_sky() { return kSkyMap && frame.cells_x > 0u; }
 
-LightSample sample_light(vec3 from, uvec4 bits)
+LightSample sample_light(vec3 from, vec3 n, uvec4 bits)
 {
     if (frame.strategy_count == 0u) return kNoLight;
     uint strategy;
@@ -147,7 +175,7 @@ LightSample sample_light(vec3 from, uvec4 bits)
         ++next;
     }
     if (samples_punctual()) {
-        if (strategy == next) light = sample_punctual(from, pick);
+        if (strategy == next) light = sample_punctual(from, n, pick, u.x);
         ++next;
     }
     if (samples_sky() && strategy == next) {

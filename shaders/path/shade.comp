@@ -86,7 +86,7 @@ void main()
     PathState shadow = path;
     bool casts = false;
     if (!last && scatters && !is_delta(bsdf)) {
-        LightSample light = sample_light(s.position, random_bits(id, sample_index, 2u * push.iteration + 3u, frame.seed));
+        LightSample light = sample_light(s.position, s.n, random_bits(id, sample_index, 2u * push.iteration + 3u, frame.seed));
         vec3 wi_local = to_local(local, light.wi);
         float pdf;
         vec3 value = eval_bsdf(bsdf, wo_local, wi_local, pdf);

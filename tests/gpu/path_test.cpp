@@ -98,6 +98,34 @@ TEST_F(PathPicture, a_stop_keeps_the_passes_that_are_done)
     EXPECT_GE(render_path(device(), posed, require(posed, how), how, progress).samples, 1u);
 }
 
+TEST_F(PathPicture, a_stop_in_the_first_pass_keeps_the_pixels_that_have_a_sample)
+{
+    SceneBuilder sky("sky");
+    sky.environment(constant_sky(2));
+    const Scene scene = std::move(sky).finish();
+    PoseSettings pose_settings;
+    pose_settings.size = ivec2(701, 333);
+    const PosedScene posed = pose(scene, pose_settings);
+    const RenderSettings how = settings(8);
+    PathTracer tracer(device(), posed, require(posed, how), how);
+    ASSERT_FALSE(tracer.step(8)) << "more pixels than a step";
+    const double reached = tracer.pass_fraction();
+    tracer.stop_pass();
+    const Film film = tracer.film();
+    EXPECT_EQ(film.samples, 1u);
+    EXPECT_TRUE(film.variance.empty());
+    std::size_t lit = 0;
+    for (std::size_t i = 0; i < film.mean.size(); ++i) {
+        EXPECT_EQ(film.mean[i], vec3(2 * film.alpha[i])) << i;
+        lit += film.alpha[i] == 1;
+    }
+    EXPECT_NEAR(double(lit), reached * double(film.mean.size()), 0.5);
+    EXPECT_EQ(film.metadata.at("pixels.unreached"), std::to_string(film.mean.size() - lit));
+    tracer.start(posed.view);
+    while (tracer.samples() < 8) tracer.step(8);
+    EXPECT_TRUE(same_film(tracer.film(), render_path(device(), posed, require(posed, how), how, {})));
+}
+
 TEST_F(PathPicture, aovs_say_what_the_centre_of_each_pixel_sees)
 {
     SceneBuilder b("aovs");
@@ -161,7 +189,7 @@ TEST_F(PathPicture, every_kind_of_traversal_gives_the_same_bits)
 
 TEST_F(PathPicture, R29_requirements_too_many_change_no_bit)
 {
-    for (const char* name : {"cornell", "maps"}) {
+    for (const char* name : {"cornell", "maps", "clearcoat", "sheen", "volume", "specular-glossiness"}) {
         const Scene scene = make_builtin(name);
         PoseSettings pose_settings;
         pose_settings.size = ivec2(24);
@@ -170,6 +198,28 @@ TEST_F(PathPicture, R29_requirements_too_many_change_no_bit)
         const Film needed = render_path(device(), posed, required, settings(4), {});
         required.bits.set();
         EXPECT_TRUE(same_film(needed, render_path(device(), posed, required, settings(4), {}))) << name;
+    }
+}
+
+TEST_F(PathPicture, R29_each_layer_shows_where_it_is_required)
+{
+    const std::pair<const char*, Feature> rows[] = {
+        {"specular", Feature::specular},         {"specular", Feature::layer_textures},
+        {"clearcoat", Feature::clearcoat},       {"sheen", Feature::sheen},
+        {"transmission", Feature::transmission}, {"volume", Feature::volume},
+        {"iridescence", Feature::iridescence},   {"anisotropy", Feature::anisotropy},
+        {"dispersion", Feature::dispersion},     {"diffuse-transmission", Feature::diffuse_transmission}};
+    for (const auto& [name, feature] : rows) {
+        const Scene scene = make_builtin(name);
+        PoseSettings pose_settings;
+        pose_settings.size = ivec2(24, 12);
+        const PosedScene posed = pose(scene, pose_settings);
+        Requirements required = require(posed, settings(2));
+        ASSERT_TRUE(required.has(feature)) << name;
+        const Film with = render_path(device(), posed, required, settings(2), {});
+        EXPECT_EQ(with.nonfinite, 0u) << name;
+        required.bits.reset(static_cast<std::size_t>(feature));
+        EXPECT_FALSE(same_film(with, render_path(device(), posed, required, settings(2), {}))) << name;
     }
 }
 

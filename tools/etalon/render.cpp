@@ -77,6 +77,12 @@ void tell(const Picture& picture, const RenderSettings& settings)
                         describe_error(film, settings.renderer)));
 }
 
+std::uint64_t pixels_without_samples(const Film& film)
+{
+    const auto found = film.metadata.find("pixels.unreached");
+    return found == film.metadata.end() ? 0 : std::stoull(found->second);
+}
+
 Json as_json(const Picture& picture, const RenderSettings& settings, const std::vector<std::string>& findings)
 {
     const Film& film = picture.film;
@@ -96,6 +102,7 @@ Json as_json(const Picture& picture, const RenderSettings& settings, const std::
          {"width", film.width},
          {"height", film.height},
          {"samples", film.samples},
+         {"pixels_without_samples", pixels_without_samples(film)},
          {"seed", settings.seed},
          {"error", error},
          {"error_text", describe_error(film, settings.renderer)},
@@ -155,6 +162,11 @@ bool finish(Run& run, Picture& picture)
     }
     write(picture, run.develop);
     tell(picture, run.settings);
+    if (const std::uint64_t none = pixels_without_samples(picture.film); none > 0)
+        warn(run.terminal,
+             fmt::format("{}: interrupted in the first pass: {} of {} pixels have no sample and are black and "
+                         "transparent",
+                         picture.scene, none, picture.film.pixel_count()));
     const std::vector<std::string> findings = suspicions(picture.film);
     for (const std::string& finding : findings) warn(run.terminal, fmt::format("{}: {}", picture.scene, finding));
     run.suspicious = run.suspicious || !findings.empty();
