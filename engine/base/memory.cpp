@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <exception>
-#include <filesystem>
 #include <fstream>
 #include <new>
 #include <string>
@@ -16,22 +15,23 @@
 namespace etalon {
 namespace {
 
-namespace fs = std::filesystem;
-
 std::uint64_t page_bytes()
 {
     return static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
 }
 
-/// The smallest limit in the files `name` of `group` and the groups above it, below the mount point `mount`.
-std::uint64_t smallest_limit(const fs::path& mount, const fs::path& group, const char* name)
+/// The smallest limit in the files `name` of `group` ("/a/b") and the groups above it, below the mount point `mount`.
+/// No std::filesystem::path: joining two frees twice when memory ends (libstdc++ 12).
+std::uint64_t smallest_limit(const std::string& mount, std::string group, const std::string& name)
 {
     std::uint64_t smallest = ~std::uint64_t{0};
-    for (fs::path at = group.relative_path();; at = at.parent_path()) {
+    for (;;) {
         std::uint64_t limit = 0;
         // Absent where the group is seen from inside its own namespace; "max" where there is none.
-        if (std::ifstream(mount / at / name) >> limit && limit > 0) smallest = std::min(smallest, limit);
-        if (at.empty()) return smallest;
+        if (std::ifstream(mount + group + '/' + name) >> limit && limit > 0) smallest = std::min(smallest, limit);
+        if (group.empty()) return smallest;
+        const std::size_t end = group.rfind('/');
+        group.resize(end == std::string::npos ? 0 : end);
     }
 }
 
@@ -44,7 +44,7 @@ std::uint64_t control_group_limit()
         const std::size_t second = first == std::string::npos ? first : line.find(':', first + 1);
         if (second == std::string::npos) continue;
         const std::string controllers = ',' + line.substr(first + 1, second - first - 1) + ',';
-        const fs::path group = line.substr(second + 1);
+        const std::string group = line.substr(second + 1);
         if (controllers == ",,")
             smallest = std::min(smallest, smallest_limit("/sys/fs/cgroup", group, "memory.max"));
         else if (controllers.find(",memory,") != std::string::npos)
