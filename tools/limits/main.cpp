@@ -21,7 +21,7 @@ std::string value(const Limit& row, std::uint64_t amount)
             if (amount % bytes == 0) return fmt::format("{} {}", amount / bytes, unit);
     std::string digits = std::to_string(amount);
     for (auto at = static_cast<std::ptrdiff_t>(digits.size()) - 3; at > 0; at -= 3)
-        digits.insert(static_cast<std::size_t>(at), ",");
+        digits.insert(static_cast<std::size_t>(at), 1, ',');
     return digits;
 }
 
