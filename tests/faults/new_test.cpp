@@ -77,7 +77,7 @@ void fail_allocations_of_a_process(const std::function<void()>& action, std::siz
 
 class Allocations : public testing::TestWithParam<Renderer> {};
 
-std::string_view name(Renderer renderer)
+std::string_view label_of(Renderer renderer)
 {
     constexpr std::string_view kNames[] = {"raster", "path", "reference_raster", "reference"};
     return kNames[static_cast<int>(renderer)];
@@ -85,7 +85,7 @@ std::string_view name(Renderer renderer)
 INSTANTIATE_TEST_SUITE_P(Of, Allocations,
                          testing::Values(Renderer::raster, Renderer::path, Renderer::reference_raster,
                                          Renderer::reference),
-                         [](const auto& which) { return std::string(name(which.param)); });
+                         [](const auto& which) { return std::string(label_of(which.param)); });
 
 TEST_P(Allocations, a_picture_survives_each_that_fails)
 {
