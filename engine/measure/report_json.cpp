@@ -3,7 +3,9 @@
 
 #include "engine/measure/diff.h"
 #include "engine/measure/report.h"
+#include "engine/measure/stability.h"
 #include "engine/measure/text.h"
+#include "engine/measure/tradeoff.h"
 
 namespace etalon {
 namespace {
@@ -120,6 +122,16 @@ std::string dump(const Json& json)
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+Json timing_json(const Timing& time)
+{
+    const MedianInterval interval = median_interval(time.seconds);
+    return {{"median", time.median()},
+            {"low", interval.low},
+            {"high", interval.high},
+            {"confidence", interval.confidence},
+            {"all", time.seconds}};
+}
+
 }  // namespace
 
 std::string report_json(const Report& report)
@@ -160,6 +172,66 @@ std::string diff_json(const FileDiff& diff, const std::string& name_a, const std
              {"film_b", film_json(diff.b)}};
     out.update(comparison_json(diff.comparison));
     return dump(out);
+}
+
+std::string tradeoff_json(const Tradeoff& tradeoff)
+{
+    Json points = Json::array();
+    for (const TradePoint& point : tradeoff.points)
+        points.push_back({{"settings", point.flags},
+                          {"turned", point.turned},
+                          {"frontier", point.frontier},
+                          {"seconds", timing_json(point.time)},
+                          {"time_ratio", point.time_ratio},
+                          {"relmse", point.error.relmse},
+                          {"relmse_deviation", point.error.deviation},
+                          {"reference_share", point.error.reference_share},
+                          {"resolved", point.error.resolved()}});
+    const Json out = {{"schema", "etalon-tradeoff/1"},
+                      {"scene", tradeoff.scene},
+                      {"command", tradeoff.command},
+                      {"settings", values_json(tradeoff.settings)},
+                      {"versions", values_json(tradeoff.versions)},
+                      {"notes", tradeoff.notes},
+                      {"interrupted", tradeoff.interrupted},
+                      {"reference",
+                       {{"settings", flags_of(tradeoff.reference_settings)},
+                        {"samples", tradeoff.reference.samples},
+                        {"seconds", tradeoff.reference_seconds}}},
+                      {"points", points}};
+    return out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string stability_json(const Stability& stability)
+{
+    Json rows = Json::array();
+    for (const StabilityRow& row : stability.rows) {
+        Json probes = Json::array();
+        for (const Probe& probe : row.probes)
+            probes.push_back({{"size", probe.size}, {"holds", probe.holds}, {"why", probe.why}});
+        const std::optional<double> broken = row.breaks_at();
+        rows.push_back({{"id", row.id},
+                        {"relation", row.name},
+                        {"unit", row.unit},
+                        {"renderer", name(row.renderer)},
+                        {"promised", row.promised},
+                        {"promise", row.promise == Holding::holds    ? "holds"
+                                    : row.promise == Holding::breaks ? "breaks"
+                                                                     : "not reached"},
+                        {"holds_to", row.holds_to() > 0 ? Json(row.holds_to()) : Json(nullptr)},
+                        {"breaks_at", broken ? Json(*broken) : Json(nullptr)},
+                        {"probes", probes}});
+    }
+    const Json out = {{"schema", "etalon-stability/1"},
+                      {"scene", stability.scene},
+                      {"command", stability.command},
+                      {"settings", values_json(stability.settings)},
+                      {"versions", values_json(stability.versions)},
+                      {"notes", stability.notes},
+                      {"interrupted", stability.interrupted},
+                      {"passed", passed(stability)},
+                      {"rows", rows}};
+    return out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace etalon

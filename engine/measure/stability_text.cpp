@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "engine/base/files.h"
 #include "engine/measure/page.h"
@@ -10,8 +9,6 @@
 
 namespace etalon {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string size_text(const StabilityRow& row, double size)
 {
@@ -51,40 +48,6 @@ std::string stability_table(const Stability& stability)
     for (const std::string& note : stability.notes) out += note + "\n";
     return out + (passed(stability) ? "every promised range that was tried holds\n"
                                     : "a promised range BREAKS on this scene\n");
-}
-
-std::string stability_json(const Stability& stability)
-{
-    Json settings = Json::object(), versions = Json::object(), rows = Json::array();
-    for (const auto& [key, value] : stability.settings) settings[key] = value;
-    for (const auto& [key, value] : stability.versions) versions[key] = value;
-    for (const StabilityRow& row : stability.rows) {
-        Json probes = Json::array();
-        for (const Probe& probe : row.probes)
-            probes.push_back({{"size", probe.size}, {"holds", probe.holds}, {"why", probe.why}});
-        const std::optional<double> broken = row.breaks_at();
-        rows.push_back({{"id", row.id},
-                        {"relation", row.name},
-                        {"unit", row.unit},
-                        {"renderer", name(row.renderer)},
-                        {"promised", row.promised},
-                        {"promise", row.promise == Holding::holds    ? "holds"
-                                    : row.promise == Holding::breaks ? "breaks"
-                                                                     : "not reached"},
-                        {"holds_to", row.holds_to() > 0 ? Json(row.holds_to()) : Json(nullptr)},
-                        {"breaks_at", broken ? Json(*broken) : Json(nullptr)},
-                        {"probes", probes}});
-    }
-    const Json out = {{"schema", "etalon-stability/1"},
-                      {"scene", stability.scene},
-                      {"command", stability.command},
-                      {"settings", settings},
-                      {"versions", versions},
-                      {"notes", stability.notes},
-                      {"interrupted", stability.interrupted},
-                      {"passed", passed(stability)},
-                      {"rows", rows}};
-    return out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::string stability_html(const Stability& stability)

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "engine/base/files.h"
 #include "engine/image/io.h"
@@ -11,8 +10,6 @@
 
 namespace etalon {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string error_cell(const ErrorMeasurement& error)
 {
@@ -40,16 +37,6 @@ std::string quoted(const std::string& text)
     std::string out = "\"";
     for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
     return out + "\"";
-}
-
-Json timing_json(const Timing& time)
-{
-    const MedianInterval interval = median_interval(time.seconds);
-    return {{"median", time.median()},
-            {"low", interval.low},
-            {"high", interval.high},
-            {"confidence", interval.confidence},
-            {"all", time.seconds}};
 }
 
 }  // namespace
@@ -92,36 +79,6 @@ std::string tradeoff_csv(const Tradeoff& tradeoff)
                            point.time_ratio, point.error.relmse, point.error.deviation, point.error.reference_share);
     }
     return out;
-}
-
-std::string tradeoff_json(const Tradeoff& tradeoff)
-{
-    Json settings = Json::object(), versions = Json::object(), points = Json::array();
-    for (const auto& [key, value] : tradeoff.settings) settings[key] = value;
-    for (const auto& [key, value] : tradeoff.versions) versions[key] = value;
-    for (const TradePoint& point : tradeoff.points)
-        points.push_back({{"settings", point.flags},
-                          {"turned", point.turned},
-                          {"frontier", point.frontier},
-                          {"seconds", timing_json(point.time)},
-                          {"time_ratio", point.time_ratio},
-                          {"relmse", point.error.relmse},
-                          {"relmse_deviation", point.error.deviation},
-                          {"reference_share", point.error.reference_share},
-                          {"resolved", point.error.resolved()}});
-    const Json out = {{"schema", "etalon-tradeoff/1"},
-                      {"scene", tradeoff.scene},
-                      {"command", tradeoff.command},
-                      {"settings", settings},
-                      {"versions", versions},
-                      {"notes", tradeoff.notes},
-                      {"interrupted", tradeoff.interrupted},
-                      {"reference",
-                       {{"settings", flags_of(tradeoff.reference_settings)},
-                        {"samples", tradeoff.reference.samples},
-                        {"seconds", tradeoff.reference_seconds}}},
-                      {"points", points}};
-    return out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::vector<std::filesystem::path> write_tradeoff(const Tradeoff& tradeoff, const std::filesystem::path& folder)

@@ -39,6 +39,12 @@ Command render_command()
                .standard = "raster",
                .choices = {"raster", "path", "reference", "reference-raster"},
                .heading = "Output"},
+              {.name = "max-error",
+               .argument = "E",
+               .help =
+                   "Path tracers: as many samples as the relative standard error E of the picture needs, found by a "
+                   "pilot that is not part of the picture; --spp is then the most",
+               .heading = "Speed and accuracy"},
               {.name = "aovs",
                .help = "Also put depth, normal, albedo, emission, object and material id and uv into .exr files",
                .heading = "Output"}},
@@ -56,6 +62,8 @@ Command render_command()
         .examples = {{"etalon render chair.glb -o chair.png", "The rasterizer's picture of a file"},
                      {"etalon render builtin:cornell --renderer path --spp 256 -o cornell.png -o cornell.exr",
                       "A path-traced picture, with its radiance and error"},
+                     {"etalon render builtin:cornell --renderer path --max-error 0.05 -o cornell.exr",
+                      "As many samples as an error of 5% needs"},
                      {"etalon render a.glb b.glb --size 640x480 -o 'out/{name}.png'",
                       "Several scenes with one device start-up"},
                      {"etalon render fox.glb --animation Run --frames 0:47 --fps 24 -o 'out/####.png'",
