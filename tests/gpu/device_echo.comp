@@ -13,6 +13,7 @@ layout(scalar, set = 0, binding = 5) writeonly buffer PathFrames { PathFrame pat
 layout(scalar, set = 0, binding = 6) writeonly buffer PathPushes { PathPush path_pushes[]; };
 layout(scalar, set = 0, binding = 7) writeonly buffer Emitters { EmitterRecord emitters[]; };
 layout(scalar, set = 0, binding = 8) writeonly buffer Layers { LayerRecord layers[]; };
+layout(scalar, set = 0, binding = 9) writeonly buffer Shrinks { RasterShrink shrinks[]; };
 
 void main()
 {
@@ -46,4 +47,7 @@ void main()
     LayerRecord layer;
     fill_echo(layer, n);
     layers[i] = layer;
+    RasterShrink shrink;
+    fill_echo(shrink, n);
+    shrinks[i] = shrink;
 }

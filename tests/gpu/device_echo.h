@@ -163,6 +163,7 @@ ETALON_FUNCTION void fill_echo(ETALON_INOUT(RasterFrame) r, uint n)
     r.mirror_size = next_uvec2(n);
     r.light_count = next_uint(n);
     r.emitter_count = next_uint(n);
+    r.background = next_vec4(n);
 }
 
 ETALON_FUNCTION void fill_echo(ETALON_INOUT(EmitterRecord) r, uint n)
@@ -180,6 +181,7 @@ ETALON_FUNCTION void fill_echo(ETALON_INOUT(RasterDraw) r, uint n)
     for (int i = 0; i < 3; ++i) r.object_rows[i] = next_vec4(n);
     r.normal_matrix = next_mat3(n);
     r.handedness = next_float(n);
+    r.scale = next_float(n);
     r.material = next_uint(n);
     r.object_id = next_uint(n);
     r.first_face = next_uint(n);
@@ -191,6 +193,13 @@ ETALON_FUNCTION void fill_echo(ETALON_INOUT(RasterSphere) r, uint n)
     r.radius = next_float(n);
     r.material = next_uint(n);
     r.object_id = next_uint(n);
+    r.scale = next_float(n);
+}
+
+ETALON_FUNCTION void fill_echo(ETALON_INOUT(RasterShrink) r, uint n)
+{
+    r.size = next_uvec2(n);
+    r.level = next_uint(n);
 }
 
 ETALON_FUNCTION void fill_echo(ETALON_INOUT(PathFrame) r, uint n)

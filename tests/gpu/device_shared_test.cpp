@@ -49,6 +49,7 @@ TEST_F(DeviceShared, every_shared_struct_has_one_layout_on_host_and_device)
     const gpu::Buffer path_pushes = make_records<shared::PathPush>(device());
     const gpu::Buffer emitters = make_records<shared::EmitterRecord>(device());
     const gpu::Buffer layers = make_records<shared::LayerRecord>(device());
+    const gpu::Buffer shrinks = make_records<shared::RasterShrink>(device());
     const gpu::Bindings bindings(device(), kernel.layout(),
                                  {{0, materials},
                                   {1, lights},
@@ -58,7 +59,8 @@ TEST_F(DeviceShared, every_shared_struct_has_one_layout_on_host_and_device)
                                   {5, path_frames},
                                   {6, path_pushes},
                                   {7, emitters},
-                                  {8, layers}});
+                                  {8, layers},
+                                  {9, shrinks}});
     gpu::run(device(), [&](gpu::Commands& commands) {
         commands.bind(kernel, bindings);
         commands.push(kElements);
@@ -73,6 +75,7 @@ TEST_F(DeviceShared, every_shared_struct_has_one_layout_on_host_and_device)
     expect_same<shared::PathPush>(device(), path_pushes, "PathPush");
     expect_same<shared::EmitterRecord>(device(), emitters, "EmitterRecord");
     expect_same<shared::LayerRecord>(device(), layers, "LayerRecord");
+    expect_same<shared::RasterShrink>(device(), shrinks, "RasterShrink");
 }
 
 struct Drawn {
