@@ -239,7 +239,7 @@ Command stability_command()
         .summary = "Find out where a scene's picture holds under harmless changes, and where it breaks",
         .description =
             "Changes SCENE in ways that must leave its picture alone (scale, distance from the origin, order of "
-            "triangles, brightness against exposure, …), by more and more, and compares: path-traced pictures by "
+            "triangles, brightness against exposure and more), by more and more, and compares: path-traced pictures by "
             "statistics, rasterized ones within the derived budget. Says for each change up to what size the picture "
             "holds and where it breaks.",
         .argument = "SCENE",
