@@ -54,6 +54,11 @@ class Trials {
         }
         for (Trial& trial : trials)
             if (has_time() && trial.exists && !trial.row.probes.empty()) look_further(trial);
+        if (!has_time())
+            out_.notes.push_back(
+                fmt::format("{} s were not enough to look beyond every promise and to bisect every "
+                            "break: a larger --budget does",
+                            settings_.budget_seconds));
         std::size_t unreached = 0;
         for (Trial& trial : trials) {
             if (!trial.row.probes.empty())
