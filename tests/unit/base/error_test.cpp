@@ -37,8 +37,13 @@ TEST(Error, names_in_utf8_are_left_alone)
     EXPECT_EQ(Error(Blame::input, "Möbius → 椅子").message(), "etalon: Möbius → 椅子");
 }
 
+[[noreturn]] void run_out()
+{
+    throw std::bad_alloc();
+}
+
 struct Exhausted {
-    ~Exhausted() { throw std::bad_alloc(); }  // in a destructor, which ends the program
+    ~Exhausted() { run_out(); }  // in a destructor, which ends the program
 };
 
 TEST(OutOfMemoryDeathTest, in_a_destructor_it_is_said_with_the_exit_code_of_the_machine)

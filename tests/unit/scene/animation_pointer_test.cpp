@@ -46,6 +46,7 @@ PosedScene halfway(const Scene& scene)
     EXPECT_TRUE(scene.warnings.empty()) << scene.warnings[0];
     return pose(scene, {.time = 0.5});
 }
+PosedScene halfway(Scene&&) = delete;  // a PosedScene refers to its scene
 
 TEST(AnimationPointer, moves_nodes_and_weights_like_the_core_paths)
 {
@@ -78,10 +79,12 @@ TEST(AnimationPointer, moves_materials_and_leaves_the_scene_as_it_was)
 
 TEST(AnimationPointer, emission_is_factor_times_strength_whichever_moves)
 {
-    const PosedScene factor = halfway(file_that_moves("/materials/0/emissiveFactor", {0, 0, 0, 1, 2, 3}).load());
+    const Scene by_factor = file_that_moves("/materials/0/emissiveFactor", {0, 0, 0, 1, 2, 3}).load();
+    const PosedScene factor = halfway(by_factor);
     EXPECT_EQ(factor.material(factor.draws[0]).emission, dvec3(2, 4, 6));
-    const PosedScene strength = halfway(
-        file_that_moves("/materials/0/extensions/KHR_materials_emissive_strength/emissiveStrength", {0, 8}).load());
+    const Scene by_strength =
+        file_that_moves("/materials/0/extensions/KHR_materials_emissive_strength/emissiveStrength", {0, 8}).load();
+    const PosedScene strength = halfway(by_strength);
     EXPECT_EQ(strength.material(strength.draws[0]).emission, dvec3(4, 2, 1));
 }
 
@@ -100,7 +103,8 @@ TEST(AnimationPointer, texture_transforms_move_by_their_parts)
 {
     const std::string at = "/materials/0/pbrMetallicRoughness/baseColorTexture/extensions/KHR_texture_transform/";
     const auto transform = [&](const std::string& part, const std::vector<float>& values) {
-        const PosedScene posed = halfway(file_that_moves(at + part, values).load());
+        const Scene scene = file_that_moves(at + part, values).load();
+        const PosedScene posed = halfway(scene);
         return posed.material(posed.draws[0]).base_color_texture.transform;
     };
     EXPECT_EQ(transform("offset", {0, 0, 1, 2})[2], dvec3(0.5, 1, 1));
@@ -112,8 +116,8 @@ TEST(AnimationPointer, texture_transforms_move_by_their_parts)
 
 TEST(AnimationPointer, holds_splines_to_what_a_property_can_be)
 {
-    const PosedScene posed =
-        halfway(file_that_moves("/materials/0/pbrMetallicRoughness/metallicFactor", {0.5f, 9}).load());
+    const Scene scene = file_that_moves("/materials/0/pbrMetallicRoughness/metallicFactor", {0.5f, 9}).load();
+    const PosedScene posed = halfway(scene);
     EXPECT_EQ(posed.material(posed.draws[0]).metallic, 1);
 }
 
