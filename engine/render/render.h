@@ -15,8 +15,8 @@ Film render_raster(gpu::Device& device, const PosedScene& posed, const Requireme
 
 /// The Vulkan compute path tracer: docs/shading.md §3. Bounded work per submit; stops within about 50 ms of device
 /// time when `progress` says so and returns what it has (PathTracer::stop_pass). When the device is lost it is renewed
-/// once, so that nothing else may be alive on it, and the picture goes on from the last 256 samples a pixel, to the same
-/// bits; a second loss is DeviceLost.
+/// once, so that nothing else may be alive on it, and the picture goes on from the last 256 samples a pixel, to the
+/// same bits; a second loss is DeviceLost.
 Film render_path(gpu::Device& device, const PosedScene& posed, const Requirements& required,
                  const RenderSettings& settings, const Progress& progress);
 

@@ -11,7 +11,6 @@ namespace etalon::gltf {
 
 namespace {
 
-
 // Bytes that a primitive's own copy of its vertices and indices takes: primitives may share accessors, copies do not.
 double bytes_of(const Model& model, const tinygltf::Primitive& primitive)
 {
@@ -67,11 +66,10 @@ class Meshes {
         for (const tinygltf::Mesh& mesh : source_.model.meshes)
             for (const tinygltf::Primitive& primitive : mesh.primitives) bytes += bytes_of(source_.model, primitive);
         if (bytes > double(source_.limits.vertex_bytes))
-            throw fault(
-                "/meshes",
-                fmt::format("the vertices of all primitives need {:.3g} GiB; the limit is {:.3g}", bytes / (1 << 30),
-                            double(source_.limits.vertex_bytes) / (1 << 30)),
-                "give each primitive its own part of the vertices, or split the file");
+            throw fault("/meshes",
+                        fmt::format("the vertices of all primitives need {:.3g} GiB; the limit is {:.3g}",
+                                    bytes / (1 << 30), double(source_.limits.vertex_bytes) / (1 << 30)),
+                        "give each primitive its own part of the vertices, or split the file");
     }
 
     void convert(const tinygltf::Primitive& in, const std::string& pointer, Mesh& mesh)

@@ -53,8 +53,8 @@ Scene parse_gltf(std::span<const std::byte> bytes, const std::filesystem::path& 
     gltf::list_variants(model, scene);
     gltf::list_metadata(model, scene);
     const gltf::Decoded decoded = gltf::decode_compressed(model, checked);
-    const gltf::Source source{model, checked, decoded, folder,
-                              options.variant ? variant_of(scene, *options.variant) : kNone, options.limits};
+    const gltf::Source source{
+        model, checked, decoded, folder, options.variant ? variant_of(scene, *options.variant) : kNone, options.limits};
     scene.warnings = checked.warnings;
     scene.broken_rules = checked.broken_rules;
     for (std::string& warning : warnings_for_extensions(model.extensionsUsed))

@@ -1,5 +1,5 @@
-// The tables of directional albedo (SH-53, SH-61), the same for the host that fills them and the kernels that read them:
-// cells of (value, next along x, next along y, both), so that one read of a texel interpolates.
+// The tables of directional albedo (SH-53, SH-61), the same for the host that fills them and the kernels that read
+// them: cells of (value, next along x, next along y, both), so that one read of a texel interpolates.
 #ifndef ETALON_SHADERS_SHARED_ALBEDO_H
 #define ETALON_SHADERS_SHARED_ALBEDO_H
 #include "shaders/shared/types.h"

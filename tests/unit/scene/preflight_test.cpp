@@ -45,8 +45,8 @@ TEST(Preflight, whole_numbers_are_integers_however_they_are_written)
         R"("buffers":[{"byteLength":1.2e1,"uri":"data:;base64,AAAAAAAAgD8AAABA"}],"scene":-0,"scenes":[{}],
            "bufferViews":[{"buffer":0.0,"byteLength":12.0}],"nodes":[{"translation":[-0.0,0.5,3.0]}])"));
     const CheckedGltf checked = preflight(bytes, "");
-    EXPECT_THAT(checked.json, AllOf(HasSubstr(R"("byteLength":12)"),
-                                    HasSubstr("[-0.0,0.5,3]"), HasSubstr(R"("scene":0)")));
+    EXPECT_THAT(checked.json,
+                AllOf(HasSubstr(R"("byteLength":12)"), HasSubstr("[-0.0,0.5,3]"), HasSubstr(R"("scene":0)")));
     EXPECT_THAT(refusal_of(bytes_of(document(R"("scene":0.5,"scenes":[{}])"))), HasSubstr("TYPE_MISMATCH"));
     EXPECT_THAT(refusal_of(bytes_of(document(R"("scene":-1,"scenes":[{}])"))), HasSubstr("INVALID_INDEX"));
 }
