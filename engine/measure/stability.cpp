@@ -48,8 +48,8 @@ class Trials {
         for (Trial& trial : trials) {
             if (!has_time()) break;
             trial.row = start_row(trial);
-            if (!trial.exists) continue;
             probe(trial, trial.relation->promised);
+            if (!trial.exists) continue;
             trial.row.promise = trial.row.probes.back().holds ? Holding::holds : Holding::breaks;
         }
         for (Trial& trial : trials)
@@ -90,10 +90,9 @@ class Trials {
         return !progress_.stopped() && spent < settings_.budget_seconds;
     }
 
-    StabilityRow start_row(Trial& trial) const
+    static StabilityRow start_row(const Trial& trial)
     {
         const Relation& relation = *trial.relation;
-        trial.exists = relation.apply(scene_, relation.start).has_value();
         return {.id = std::string(relation.id),
                 .name = std::string(relation.name),
                 .unit = std::string(relation.unit),
@@ -127,7 +126,11 @@ class Trials {
         Probe& probe = trial.row.probes.back();
         try {
             const std::optional<Variant> variant = trial.relation->apply(scene_, size);
-            assume(variant.has_value());
+            if (!variant) {
+                trial.exists = false;
+                trial.row.probes.pop_back();
+                return;
+            }
             const PosedScene posed = pose(variant->scene, view_);
             const RenderSettings settings = settings_of(trial.renderer, ++drawn_);
             const Film film = divided(calls_.render(posed, settings, progress_.silent()), variant->radiance);

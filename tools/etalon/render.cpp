@@ -116,40 +116,46 @@ Json as_json(const Picture& picture, const RenderSettings& settings, const std::
          {"render_stages", Json::object(stages)}});
 }
 
-/// --max-error: samples until the whole picture's relative standard error is that; --spp is then the most.
-std::optional<double> asked_error(const Arguments& arguments, const RenderSettings& settings)
-{
-    const std::optional<double> error = arguments.number("max-error", 1e-6, 10);
-    if (error && settings.renderer != Renderer::path && settings.renderer != Renderer::reference)
-        throw Error(Blame::input, "--max-error needs a renderer whose error falls with its samples",
-                    "add --renderer path");
-    return error;
-}
-
 /// Samples a pixel that --max-error may take where --spp does not say.
 constexpr std::uint64_t kMostSamples = std::uint64_t{1} << 16;
 
-Film draw_to_error(double error, std::uint64_t most, const RenderSettings& settings,
+/// --max-error: samples until the whole picture's relative standard error is `error`, and no more than `most`.
+struct ErrorGoal {
+    double error = 0;
+    std::uint64_t most = kMostSamples;
+};
+
+std::optional<ErrorGoal> error_goal(const Arguments& arguments, const RenderSettings& settings)
+{
+    const std::optional<double> error = arguments.number("max-error", 1e-6, 10);
+    if (!error) return std::nullopt;
+    if (settings.renderer != Renderer::path && settings.renderer != Renderer::reference)
+        throw Error(Blame::input, "--max-error needs a renderer whose error falls with its samples",
+                    "add --renderer path");
+    return ErrorGoal{*error, arguments.has("spp") ? settings.spp : kMostSamples};
+}
+
+Film draw_to_error(const ErrorGoal& goal, const RenderSettings& settings,
                    const std::function<Film(const RenderSettings&, const Progress&)>& draw, Picture& picture,
                    const Progress& progress)
 {
-    FilmToError made = render_to_error(settings, error, most, draw, progress);
+    FilmToError made = render_to_error(settings, goal.error, goal.most, draw, progress);
     const std::optional<ErrorEstimate> reached = estimate_error(made.film);
     if (made.capped)
         picture.notes.push_back(
             fmt::format("an error of {} needs more than {} samples a pixel: that many were taken "
                         "(--spp raises it)",
-                        error, most));
-    else if (reached && reached->low > error && !progress.stopped())
+                        goal.error, goal.most));
+    else if (reached && reached->low > goal.error && !progress.stopped())
         picture.notes.push_back(
             fmt::format("the pilot of {} samples had not seen the brightest paths: the error is "
                         "above the asked {}",
-                        made.pilot_samples, error));
+                        made.pilot_samples, goal.error));
     return std::move(made.film);
 }
 
-Picture make(const Scene& scene, PoseSettings view, Picture picture, const Arguments& arguments,
-             const RenderSettings& settings, Renderers& renderers, const Progress& progress)
+Picture make(const Scene& scene, PoseSettings view, Picture picture, const RenderSettings& settings,
+             const std::optional<ErrorGoal>& goal, Renderers& renderers, const Progress& progress)
 {
     Stopwatch stopwatch;
     view.time = picture.frame.time;
@@ -161,9 +167,7 @@ Picture make(const Scene& scene, PoseSettings view, Picture picture, const Argum
         picture.stages = std::move(drawn.stages);
         return std::move(drawn.film);
     };
-    const std::optional<double> error = asked_error(arguments, settings);
-    const std::uint64_t most = arguments.has("spp") ? settings.spp : kMostSamples;
-    picture.film = error ? draw_to_error(*error, most, settings, draw, picture, progress) : draw(settings, progress);
+    picture.film = goal ? draw_to_error(*goal, settings, draw, picture, progress) : draw(settings, progress);
     picture.seconds.render = stopwatch.lap();
     picture.interrupted = progress.stopped();
     return picture;
@@ -182,6 +186,7 @@ struct Run {
     const std::vector<Frame> frames;
     const PoseSettings view;
     const RenderSettings settings;
+    const std::optional<ErrorGoal> goal;
     const DevelopSettings develop;
     const Terminal terminal;
     const Interrupt interrupt;
@@ -224,7 +229,7 @@ bool render_scene(Run& run, const Job& job)
         ProgressDisplay display(run.arguments);
         Picture picture{.scene = job.scene, .frame = run.frames[i], .outputs = job.outputs[i]};
         picture.seconds.load = std::exchange(load, 0);
-        picture = make(scene, view, std::move(picture), run.arguments, run.settings, run.renderers,
+        picture = make(scene, view, std::move(picture), run.settings, run.goal, run.renderers,
                        display.progress(short_name(job.scene), run.interrupt.flag()));
         display.clear();
         if (i == 0)
@@ -240,16 +245,17 @@ int render(const Arguments& arguments)
 {
     const std::vector<Frame> wanted = frames(arguments);
     // Whatever is misspelt is refused before the first scene is loaded.
+    const RenderSettings settings = render_settings(arguments);
     Run run{.arguments = arguments,
             .frames = wanted,
             .view = pose_settings(arguments),
-            .settings = render_settings(arguments),
+            .settings = settings,
+            .goal = error_goal(arguments, settings),
             .develop = develop_settings(arguments),
             .terminal = Terminal::of_standard_error(),
             .interrupt = {},
             .renderers = Renderers(arguments),
             .results = {}};
-    static_cast<void>(asked_error(arguments, run.settings));
     for (const Job& job : plan(arguments, wanted))
         if (!render_scene(run, job)) break;
     if (arguments.has("json"))

@@ -7,6 +7,7 @@
 #include "engine/measure/rasters.h"
 #include "tools/etalon/arguments.h"
 #include "tools/etalon/interrupt.h"
+#include "tools/etalon/measuring.h"
 #include "tools/etalon/output.h"
 #include "tools/etalon/progress_display.h"
 #include "tools/etalon/provenance.h"
@@ -24,15 +25,10 @@ constexpr ivec2 kStandardSize(128, 96);
 StabilitySettings stability_settings(const Arguments& arguments)
 {
     StabilitySettings settings{.render = render_settings(arguments)};
-    settings.budget_seconds = arguments.number("budget", 1, 1e6).value_or(settings.budget_seconds);
-    if (arguments.has("quick")) {
-        settings.budget_seconds = std::min(settings.budget_seconds, 15.0);
-        settings.bisections = 0;
-    }
+    settings.renderers = measured_renderers(arguments);
+    settings.budget_seconds = budget_seconds(arguments);
+    if (arguments.has("quick")) settings.bisections = 0;
     settings.false_alarm = arguments.number("false-alarm", 1e-12, 0.5).value_or(settings.false_alarm);
-    const std::string only = arguments.text("renderer").value_or("both");
-    if (only == "raster") settings.renderers = {Renderer::raster};
-    if (only == "path") settings.renderers = {Renderer::path};
     return settings;
 }
 
@@ -62,11 +58,9 @@ class RasterJudge {
 int stability(const Arguments& arguments)
 {
     const std::string& scene_name = arguments.positional().front();
-    const std::filesystem::path folder =
-        arguments.text("output").value_or("out/" + short_name(scene_name) + "-stability");
+    const std::filesystem::path folder = measuring_folder(arguments);
     const StabilitySettings settings = stability_settings(arguments);
-    PoseSettings view = pose_settings(arguments);
-    if (!view.size) view.size = kStandardSize;
+    const PoseSettings view = measured_view(arguments, kStandardSize);
     check_folder(folder);
 
     const Interrupt interrupt;

@@ -5,6 +5,7 @@
 #include "engine/base/error.h"
 #include "tools/etalon/arguments.h"
 #include "tools/etalon/interrupt.h"
+#include "tools/etalon/measuring.h"
 #include "tools/etalon/output.h"
 #include "tools/etalon/progress_display.h"
 #include "tools/etalon/provenance.h"
@@ -23,15 +24,12 @@ TradeoffSettings tradeoff_settings(const Arguments& arguments)
 {
     TradeoffSettings settings{.standard = render_settings(arguments)};
     settings.seed = settings.standard.seed;
-    settings.budget_seconds = arguments.number("budget", 1, 1e6).value_or(settings.budget_seconds);
+    settings.renderers = measured_renderers(arguments);
+    settings.budget_seconds = budget_seconds(arguments);
     if (arguments.has("quick")) {
-        settings.budget_seconds = std::min(settings.budget_seconds, 15.0);
         settings.rounds = 3;
         settings.combinations = 0;
     }
-    const std::string only = arguments.text("renderer").value_or("both");
-    if (only == "raster") settings.renderers = {Renderer::raster};
-    if (only == "path") settings.renderers = {Renderer::path};
     return settings;
 }
 
@@ -40,11 +38,9 @@ TradeoffSettings tradeoff_settings(const Arguments& arguments)
 int tradeoff(const Arguments& arguments)
 {
     const std::string& scene_name = arguments.positional().front();
-    const std::filesystem::path folder =
-        arguments.text("output").value_or("out/" + short_name(scene_name) + "-tradeoff");
+    const std::filesystem::path folder = measuring_folder(arguments);
     const TradeoffSettings settings = tradeoff_settings(arguments);
-    PoseSettings view = pose_settings(arguments);
-    if (!view.size) view.size = kStandardSize;
+    const PoseSettings view = measured_view(arguments, kStandardSize);
     check_folder(folder);
 
     const Interrupt interrupt;
