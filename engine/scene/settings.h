@@ -16,6 +16,21 @@ enum class Shading { automatic, blinn_phong, pbr };  ///< automatic: pbr
 /// Where a camera ray meets nothing.
 enum class Background { environment, transparent, colour };
 
+/// How the samples of a supersampled picture are weighed into pixels (AA-2).
+enum class PixelFilter { box, tent, gaussian, blackman_harris };
+
+/// How textures are filtered: as the file's samplers say, or all alike.
+enum class TextureFilter { file, nearest, bilinear, trilinear };
+
+/// What the rasterizers compare: reversed with an infinite far plane, or forward from near to the scene's far end.
+enum class DepthKind { reversed_32, forward_32, forward_24, forward_16 };
+
+/// Of punctual lights, in rasterizers.
+enum class Shadows { none, map };
+
+/// How rasterizers put together what is not opaque.
+enum class Transparency { sorted, weighted, exact };
+
 /// Everything that decides a picture besides the scene and its pose. Every field that trades speed for accuracy has a
 /// row in the knob table (engine/scene/knobs.h).
 struct RenderSettings {
@@ -27,8 +42,17 @@ struct RenderSettings {
     std::uint64_t seed = 0;
     int max_depth = 8;  ///< most segments of a path from camera to light (1: emission alone)
     bool russian_roulette = true;
-    int msaa = 4;          ///< samples per pixel of the rasterizer: 1 or 4
-    bool mipmaps = true;   ///< rasterizer: false reads level 0 alone
+    int msaa = 4;  ///< coverage samples per drawn pixel of the rasterizers: 1, 2, 4, 8 or 16
+    int ssaa = 1;  ///< rasterizers: drawn pixels along each side of a pixel
+    PixelFilter pixel_filter = PixelFilter::box;  ///< rasterizers: over drawn pixels
+    bool mipmaps = true;                          ///< rasterizer: false reads level 0 alone
+    TextureFilter texture_filter = TextureFilter::file;
+    int anisotropy = 1;  ///< rasterizers: most probes along the longer side of a texture's footprint, 1 to 16
+    DepthKind depth = DepthKind::reversed_32;
+    int point_size = 1;  ///< rasterizers: of points, pixels
+    int line_width = 1;  ///< rasterizers: of lines, pixels
+    Shadows shadows = Shadows::none;
+    Transparency transparency = Transparency::sorted;
     bool aovs = false;     ///< also fill Film::aovs
     unsigned threads = 0;  ///< CPU threads; 0: one per core. Never changes a bit of the picture.
 };
