@@ -1,5 +1,7 @@
 #pragma once
+#include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -29,13 +31,31 @@ class Progress {
         if (sink_) sink_(update);
     }
     /// True once the job should finish what it is at and return what it has.
-    bool stopped() const { return stop_ != nullptr && stop_->load(std::memory_order_relaxed); }
+    bool stopped() const
+    {
+        if (stop_ != nullptr && stop_->load(std::memory_order_relaxed)) return true;
+        return deadline_ != TimePoint::max() && std::chrono::steady_clock::now() >= deadline_;
+    }
     /// The same stop, and nothing said: for one of many jobs that a longer one is made of.
-    Progress silent() const { return Progress({}, stop_); }
+    Progress silent() const
+    {
+        Progress out({}, stop_);
+        out.deadline_ = deadline_;
+        return out;
+    }
+    using TimePoint = std::chrono::steady_clock::time_point;
+    /// The same, but stopped from `when` on as well.
+    Progress until(TimePoint when) const
+    {
+        Progress out = *this;
+        out.deadline_ = std::min(deadline_, when);
+        return out;
+    }
 
  private:
     Sink sink_;
     const std::atomic<bool>* stop_ = nullptr;
+    TimePoint deadline_ = TimePoint::max();
 };
 
 }  // namespace etalon

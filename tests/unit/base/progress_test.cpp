@@ -26,5 +26,17 @@ TEST(Progress, passes_reports_on_and_hears_the_stop)
     EXPECT_TRUE(progress.stopped());
 }
 
+TEST(Progress, stops_from_its_deadline_on_and_so_does_its_silent_twin)
+{
+    const Progress progress;
+    const auto now = std::chrono::steady_clock::now();
+    EXPECT_FALSE(progress.until(now + std::chrono::hours(1)).stopped());
+    const Progress late = progress.until(now - std::chrono::seconds(1));
+    EXPECT_TRUE(late.stopped());
+    EXPECT_TRUE(late.silent().stopped());
+    EXPECT_TRUE(late.until(now + std::chrono::hours(1)).stopped()) << "the earlier of two deadlines";
+    EXPECT_FALSE(progress.stopped());
+}
+
 }  // namespace
 }  // namespace etalon
