@@ -151,7 +151,8 @@ std::optional<ThinLens> lens_extras(const Value& extras, const std::string& poin
     if (lens == nullptr) return std::nullopt;
     const std::string where = pointer + "/extras/etalon/thin_lens";
     return ThinLens{.aperture_radius = number(*lens, "aperture_radius", where, 0, 0, kHuge),
-                    .focus_distance = number(*lens, "focus_distance", where, 1, 1e-30, kHuge)};
+                    .focus_distance = number(*lens, "focus_distance", where, 1, 1e-30, kHuge),
+                    .blades = static_cast<int>(number(*lens, "blades", where, 0, 0, 64))};
 }
 
 void apply_scene_extras(const Value& extras, const std::string& pointer, const std::filesystem::path& folder,

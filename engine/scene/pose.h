@@ -13,6 +13,8 @@ namespace etalon {
 /// Pixel (i, j), row 0 on top, covers film point (sx, sy) = ((i + dx) / width, (j + dy) / height), dx, dy in [0, 1).
 /// Perspective: direction normalize((2 sx - 1) tan(yfov/2) width/height, (1 - 2 sy) tan(yfov/2), -1).
 /// Orthographic: origin ((2 sx - 1) xmag, (1 - 2 sy) ymag, 0), direction -Z. docs/equations.md.
+/// Equirectangular: direction (sin φ sin θ, cos θ, -cos φ sin θ), φ = (2 sx - 1) π, θ = sy π: -Z in the middle, +Y on
+/// top.
 struct View {
     int width = 0;
     int height = 0;
@@ -75,13 +77,25 @@ struct Orbit {
     std::optional<double> yfov;      ///< degrees; 45 when absent
 };
 
+/// A lens put before whatever camera is chosen.
+struct LensSettings {
+    double f_stop = 8;            ///< focal length / diameter; focal length as of a film 24 mm high (TF-7)
+    std::optional<double> focus;  ///< metres along the axis; the centre of the scene's bounds when absent
+    int blades = 0;               ///< as ThinLens::blades
+};
+
+/// `camera`: as the chosen camera does.
+enum class Projection { camera, orthographic, equirectangular };
+
 /// All animations of the file at once; where two move the same thing, the later one does.
 inline constexpr const char* kEveryAnimation = "all";
 
 struct PoseSettings {
-    std::optional<Index> root;               ///< which glTF scene; the file's default when absent
-    std::optional<std::string> camera;       ///< name or index
-    std::optional<Orbit> orbit;              ///< instead of a camera
+    std::optional<Index> root;          ///< which glTF scene; the file's default when absent
+    std::optional<std::string> camera;  ///< name or index
+    std::optional<Orbit> orbit;         ///< instead of a camera
+    std::optional<LensSettings> lens;   ///< the camera's own when absent
+    Projection projection = Projection::camera;
     std::optional<ivec2> size;               ///< pixels; the scene's hint, else 1280x720
     std::optional<Environment> environment;  ///< replaces the scene's (its rotation and scale below still apply)
     bool no_environment = false;             ///< black

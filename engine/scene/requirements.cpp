@@ -53,6 +53,7 @@ constexpr std::array<std::string_view, kFeatureCount> kNames = {"triangles",
                                                                 "visible_background",
                                                                 "thin_lens",
                                                                 "orthographic",
+                                                                "equirectangular",
                                                                 "msaa",
                                                                 "aovs"};
 static_assert(!kNames.back().empty());
@@ -209,6 +210,10 @@ class Survey {
     {
         const Camera& camera = posed_.view.camera;
         const std::string who = camera.name.empty() ? "camera" : fmt::format("camera ({})", camera.name);
+        if (camera.equirectangular && rasterizes_)
+            throw Error(Blame::input, fmt::format("{} sees all around, which no rasterizer can draw", who),
+                        "choose a path tracer (--renderer path), or another projection");
+        if (camera.equirectangular) out_.set(Feature::equirectangular, who);
         if (camera.orthographic) out_.set(Feature::orthographic, who);
         if (!rasterizes_ && camera.lens && camera.lens->aperture_radius > 0) out_.set(Feature::thin_lens, who);
         if (rasterizes_ && settings_.msaa > 1)

@@ -59,6 +59,7 @@ enum class Feature : unsigned {
     visible_background,  ///< the environment is drawn behind the scene
     thin_lens,
     orthographic,
+    equirectangular,
     msaa,
     aovs,
     count

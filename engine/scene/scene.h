@@ -198,13 +198,15 @@ struct Light {
 };
 
 struct ThinLens {
-    double aperture_radius = 0;  ///< metres
+    double aperture_radius = 0;  ///< metres, to the corners of a polygon
     double focus_distance = 1;   ///< metres along the axis
+    int blades = 0;              ///< corners of a regular polygonal aperture, the first at +X; under 3: a disk
 };
 
 struct Camera {
     std::string name;
     bool orthographic = false;
+    bool equirectangular = false;  ///< sees all directions (docs of View); path tracers alone, no lens
     double yfov = kPi / 4;         ///< full vertical angle, radians
     std::optional<double> aspect;  ///< of the file; the picture's own aspect is used for rendering
     double xmag = 1, ymag = 1;     ///< half extents of an orthographic view, metres

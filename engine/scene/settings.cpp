@@ -32,4 +32,9 @@ std::string_view label(Renderer renderer)
     return {};
 }
 
+std::string_view name(Sequence sequence)
+{
+    return sequence == Sequence::sobol ? "sobol" : "pcg";
+}
+
 }  // namespace etalon

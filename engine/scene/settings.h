@@ -31,6 +31,22 @@ enum class Shadows { none, map };
 /// How rasterizers put together what is not opaque.
 enum class Transparency { sorted, weighted, exact };
 
+/// Where the random numbers of paths come from (docs/equations.md, MC-8).
+enum class Sequence { pcg, sobol };
+/// "sobol", as --sampler takes it.
+std::string_view name(Sequence sequence);
+
+/// One of several parts of a picture that are rendered apart: `number` of `count`, from 1. Part i has the rows from
+/// height (i - 1) / count to height i / count, rounded down.
+struct Shard {
+    unsigned number = 1;
+    unsigned count = 1;
+
+    bool whole() const { return count == 1; }
+    int first_row(int height) const { return static_cast<int>(std::int64_t{height} * (number - 1) / count); }
+    int end_row(int height) const { return static_cast<int>(std::int64_t{height} * number / count); }
+};
+
 /// Everything that decides a picture besides the scene and its pose. Every field that trades speed for accuracy has a
 /// row in the knob table (engine/scene/knobs.h).
 struct RenderSettings {
@@ -42,8 +58,11 @@ struct RenderSettings {
     std::uint64_t seed = 0;
     int max_depth = 8;  ///< most segments of a path from camera to light (1: emission alone)
     bool russian_roulette = true;
-    int msaa = 4;  ///< coverage samples per drawn pixel of the rasterizers: 1, 2, 4, 8 or 16
-    int ssaa = 1;  ///< rasterizers: drawn pixels along each side of a pixel
+    Sequence sampler = Sequence::pcg;
+    bool glass_shadows = false;  ///< shadow rays go straight through surfaces that transmit (SH-70)
+    Shard shard;                 ///< path tracers: the rows that the film has
+    int msaa = 4;                ///< coverage samples per drawn pixel of the rasterizers: 1, 2, 4, 8 or 16
+    int ssaa = 1;                ///< rasterizers: drawn pixels along each side of a pixel
     PixelFilter pixel_filter = PixelFilter::box;  ///< rasterizers: over drawn pixels
     bool mipmaps = true;                          ///< rasterizer: false reads level 0 alone
     TextureFilter texture_filter = TextureFilter::file;
