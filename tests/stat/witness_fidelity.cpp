@@ -1,5 +1,6 @@
 #include "witness_fidelity.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -43,9 +44,11 @@ Orbit orbit_of(const nlohmann::json& row)
 {
     const auto& target = row["target"];
     const auto& orbit = row["orbit"];
+    // A radius of 0 stands in the target and looks along the orbit's direction: an orbit this small does the same.
+    constexpr double kStanding = 1e-7;
     return {.azimuth = orbit["theta_deg"],
             .elevation = 90 - double(orbit["phi_deg"]),
-            .distance = orbit["radius"] > 0 ? std::optional<double>(orbit["radius"]) : std::nullopt,
+            .distance = std::max(double(orbit["radius"]), kStanding),
             .target = dvec3(target[0], target[1], target[2]),
             .yfov = row["vertical_fov_deg"]};
 }
