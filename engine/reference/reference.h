@@ -1,4 +1,7 @@
 #pragma once
+#include <cstdint>
+#include <span>
+
 #include "engine/base/progress.h"
 #include "engine/image/film.h"
 #include "engine/scene/pose.h"
@@ -11,6 +14,11 @@ namespace etalon::reference {
 /// Deterministic whatever the thread count. Stops early, with what it has, when `progress` says so.
 Film render_path(const PosedScene& posed, const Requirements& required, const RenderSettings& settings,
                  const Progress& progress);
+
+/// The same of chosen pixels alone, each a row-major number (y * width + x) of the posed view: a film of one row, whose
+/// pixels are to the bit those of the whole picture. Stops between passes of about half a second.
+Film render_pixels(const PosedScene& posed, const Requirements& required, const RenderSettings& settings,
+                   std::span<const std::uint32_t> pixels, const Progress& progress);
 
 /// The rasterizer of the notes, stage by stage, in double precision: edge functions with the top-left rule,
 /// perspective-correct interpolation, mip level from derivatives, trilinear filtering, the shading of docs/shading.md

@@ -16,6 +16,28 @@ constexpr std::size_t kTile = 16;        // pixels a side: one unit of work of a
 constexpr double kSecondsPerPass = 0.5;  // how long a stop may have to wait for whole passes, roughly
 constexpr std::uint64_t kMaxSamples = 0xffffffffu;
 
+/// Adds samples first … first + count - 1 of a pixel. How many of their paths the depth limit cut.
+std::uint64_t add_samples(PixelSum& sum, const PathTracer& tracer, std::size_t pixel, std::size_t width,
+                          std::uint64_t seed, std::uint64_t first, std::uint64_t count)
+{
+    std::uint64_t truncated = 0;
+    for (std::uint64_t s = first; s < first + count; ++s) {
+        const PathRandom random(static_cast<std::uint32_t>(pixel), static_cast<std::uint32_t>(s), seed);
+        const dvec2 film =
+            dvec2(static_cast<double>(pixel % width), static_cast<double>(pixel / width)) + random.in_pixel();
+        const PathResult path = tracer.trace(film, random);
+        sum.add(path.radiance, path.alpha);
+        truncated += path.truncated ? 1 : 0;
+    }
+    return truncated;
+}
+
+void check_samples(std::uint64_t spp)
+{
+    if (spp < 1 || spp > kMaxSamples)
+        throw Error(Blame::input, "samples per pixel must be 1 … 4294967295, not " + std::to_string(spp));
+}
+
 /// The samples of a picture so far. A pass gives every pixel the same number more, or, stopped, leaves all as it was.
 class Accumulation {
  public:
@@ -61,13 +83,7 @@ class Accumulation {
             for (std::size_t x = tile_x * kTile; x < std::min(width_, (tile_x + 1) * kTile); ++x) {
                 const std::size_t pixel = y * width_ + x;
                 PixelSum sum = sums_[pixel];
-                for (std::uint64_t s = samples_; s < samples_ + count; ++s) {
-                    const PathRandom random(static_cast<std::uint32_t>(pixel), static_cast<std::uint32_t>(s), seed_);
-                    const dvec2 film = dvec2(static_cast<double>(x), static_cast<double>(y)) + random.in_pixel();
-                    const PathResult path = tracer_->trace(film, random);
-                    sum.add(path.radiance, path.alpha);
-                    truncated += path.truncated ? 1 : 0;
-                }
+                truncated += add_samples(sum, *tracer_, pixel, width_, seed_, samples_, count);
                 next_[pixel] = sum;
             }
         return truncated;
@@ -88,8 +104,7 @@ Film render_path(const PosedScene& posed, const Requirements& required, const Re
                  const Progress& progress)
 {
     assume(posed.scene != nullptr && posed.view.width > 0 && posed.view.height > 0);
-    if (settings.spp < 1 || settings.spp > kMaxSamples)
-        throw Error(Blame::input, "samples per pixel must be 1 … 4294967295, not " + std::to_string(settings.spp));
+    check_samples(settings.spp);
     progress.report({.stage = "building the BVH", .fraction = 0, .error = {}, .samples = {}});
     const World world(posed, required.texture_used, false);
     const PathTracer tracer(posed, world, settings);
@@ -112,6 +127,45 @@ Film render_path(const PosedScene& posed, const Requirements& required, const Re
     Film film = film_of(picture.sums(), posed.view.width, posed.view.height, picture.samples());
     film.truncated = picture.truncated();
     if (settings.aovs) film.aovs = render_aovs(world, tracer.camera(), false, settings.threads);
+    return film;
+}
+
+Film render_pixels(const PosedScene& posed, const Requirements& required, const RenderSettings& settings,
+                   std::span<const std::uint32_t> pixels, const Progress& progress)
+{
+    assume(posed.scene != nullptr && posed.view.width > 0 && posed.view.height > 0);
+    check_samples(settings.spp);
+    const auto width = static_cast<std::size_t>(posed.view.width);
+    for (const std::uint32_t pixel : pixels) assume(pixel < width * static_cast<std::size_t>(posed.view.height));
+    progress.report({.stage = "building the BVH", .fraction = 0, .error = {}, .samples = {}});
+    const World world(posed, required.texture_used, false);
+    const PathTracer tracer(posed, world, settings);
+
+    constexpr std::size_t kChunk = 64;
+    const std::size_t chunks = (pixels.size() + kChunk - 1) / kChunk;
+    std::vector<PixelSum> sums(pixels.size());
+    std::vector<std::uint64_t> truncated(chunks, 0);
+    std::uint64_t done = 0;
+    for (std::uint64_t count = 1; done < settings.spp && !(done > 0 && progress.stopped());) {
+        count = std::min(count, settings.spp - done);
+        const auto begin = std::chrono::steady_clock::now();
+        parallel_for(
+            chunks,
+            [&](std::size_t chunk) {
+                for (std::size_t k = chunk * kChunk; k < std::min(pixels.size(), (chunk + 1) * kChunk); ++k)
+                    truncated[chunk] += add_samples(sums[k], tracer, pixels[k], width, settings.seed, done, count);
+            },
+            settings.threads);
+        done += count;
+        if (std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() < kSecondsPerPass / 2)
+            count *= 2;
+        progress.report({.stage = "path tracing single pixels",
+                         .fraction = static_cast<double>(done) / static_cast<double>(settings.spp),
+                         .error = {},
+                         .samples = done});
+    }
+    Film film = film_of(sums, static_cast<int>(pixels.size()), 1, done);
+    for (const std::uint64_t t : truncated) film.truncated += t;
     return film;
 }
 
