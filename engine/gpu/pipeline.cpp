@@ -15,40 +15,29 @@ void destroy_shader_module(const DeviceState& state, VkShaderModule module)
     state.vk.vkDestroyShaderModule(state.device, module, state.instance.allocator);
 }
 
-/// A stage as pipeline creation wants it; needed until then. Not movable: the info points into it.
+/// A stage as pipeline creation wants it; needed until then.
 class Stage {
  public:
     Stage(const DeviceState& state, const ShaderSpec& spec, VkShaderStageFlagBits stage)
     {
-        for (const Constant& constant : spec.constants) {
-            entries_.push_back({constant.id, static_cast<std::uint32_t>(values_.size() * 4), 4});
-            values_.push_back(constant.bits);
-        }
+        const std::vector<std::uint32_t> code = specialize(spec);
         const VkShaderModuleCreateInfo info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-                                            .codeSize = spec.code.size_bytes(),
-                                            .pCode = spec.code.data()};
+                                            .codeSize = code.size() * sizeof code[0],
+                                            .pCode = code.data()};
         VkShaderModule module = VK_NULL_HANDLE;
         check(state.vk.vkCreateShaderModule(state.device, &info, state.instance.allocator, &module),
               "vkCreateShaderModule");
         module_ = {state, module};
-        specialization_ = {static_cast<std::uint32_t>(entries_.size()), entries_.data(), values_.size() * 4,
-                           values_.data()};
         info_ = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
                  .stage = stage,
                  .module = module,
-                 .pName = "main",
-                 .pSpecializationInfo = &specialization_};
+                 .pName = "main"};
     }
-    Stage(const Stage&) = delete;
-    Stage& operator=(const Stage&) = delete;
 
     const VkPipelineShaderStageCreateInfo& info() const { return info_; }
 
  private:
-    std::vector<VkSpecializationMapEntry> entries_;
-    std::vector<std::uint32_t> values_;
     Owned<VkShaderModule, destroy_shader_module> module_;
-    VkSpecializationInfo specialization_{};
     VkPipelineShaderStageCreateInfo info_{};
 };
 

@@ -62,6 +62,41 @@ TEST(Reflect, refuses_what_is_not_spirv)
     EXPECT_THROW(reflect(code.first(6)), Error) << "cut after the header";
 }
 
+std::size_t count_spec_constants(std::span<const std::uint32_t> code)
+{
+    constexpr std::uint32_t kHeaderWords = 5;
+    constexpr std::uint32_t kOpSpecConstantTrue = 48;
+    constexpr std::uint32_t kOpSpecConstantOp = 52;
+    std::size_t count = 0;
+    for (std::size_t at = kHeaderWords; at < code.size(); at += code[at] >> 16) {
+        const std::uint32_t op = code[at] & 0xffffu;
+        if (op >= kOpSpecConstantTrue && op <= kOpSpecConstantOp) ++count;
+    }
+    return count;
+}
+
+TEST(Specialize, fixes_every_constant_and_drops_what_they_turn_off)
+{
+    const auto code = device_shaders::find("device_constants.comp");
+    ASSERT_GE(count_spec_constants(code), 4u);
+    const std::vector<std::uint32_t> fixed = specialize({code, {{0, true}, {99, 1u}}});
+    EXPECT_EQ(count_spec_constants(fixed), 0u);
+    EXPECT_LT(fixed.size(), code.size());
+    const Interface before = reflect(code);
+    const Interface after = reflect(fixed);
+    EXPECT_EQ(after.stage, before.stage);
+    EXPECT_EQ(after.push_constants, before.push_constants);
+    EXPECT_EQ(after.bindings.size(), before.bindings.size());
+}
+
+TEST(Specialize, refuses_what_is_not_spirv)
+{
+    EXPECT_THROW(specialize({}), Error);
+    const std::vector<std::uint32_t> garbage(100, 0xdeadbeefu);
+    EXPECT_THROW(specialize({garbage, {}}), Error);
+    EXPECT_THROW(specialize({device_shaders::find("device_count.comp").first(6), {}}), Error) << "cut after the header";
+}
+
 TEST(Formats, know_their_texels_and_levels)
 {
     EXPECT_EQ(texel_size(VK_FORMAT_R8G8B8A8_SRGB), 4u);
