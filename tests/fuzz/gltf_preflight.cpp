@@ -23,8 +23,9 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
     using namespace etalon;
     static const std::filesystem::path nowhere = "/dev/null";  // no folder, so that no file is ever read
+    static const Limits limits;  // made once: it asks the system how much memory there is
     try {
-        const CheckedGltf checked = preflight(std::as_bytes(std::span(data, size)), nowhere);
+        const CheckedGltf checked = preflight(std::as_bytes(std::span(data, size)), nowhere, limits);
         for (const GltfBuffer& buffer : checked.buffers) touch(buffer.bytes);
         for (const GltfImage& image : checked.images)
             if (image.bytes) touch(*image.bytes);

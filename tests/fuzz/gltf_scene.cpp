@@ -12,8 +12,11 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
     using namespace etalon;
     static const std::filesystem::path nowhere = "/dev/null";  // no folder, so that no file is ever read
-    LoadOptions options;
-    options.limits.zero_filled_bytes = 1 << 16;  // the same code as for 256 MB, at the speed of a fuzzer
+    static const LoadOptions options = [] {  // made once: limits ask the system how much memory there is
+        LoadOptions made;
+        made.limits.zero_filled_bytes = 1 << 16;  // the same code as for 256 MB, at the speed of a fuzzer
+        return made;
+    }();
     try {
         const Scene scene = parse_gltf(std::as_bytes(std::span(data, size)), nowhere, "fuzz", options);
         static_cast<void>(describe(scene));
