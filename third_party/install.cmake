@@ -18,12 +18,13 @@ set_target_properties(etalon_options PROPERTIES EXPORT_NAME options)
 set_target_properties(etalon_shaders PROPERTIES EXPORT_NAME shaders)
 
 install(TARGETS ${exported} EXPORT etalonTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS etalon_pictures LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(EXPORT etalonTargets NAMESPACE etalon:: DESTINATION ${package_folder})
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/etalonConfig.cmake.in ${PROJECT_BINARY_DIR}/etalonConfig.cmake
     INSTALL_DESTINATION ${package_folder})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/etalonConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/etalonConfig.cmake ${PROJECT_BINARY_DIR}/etalonConfigVersion.cmake
-    ${CMAKE_CURRENT_LIST_DIR}/FindOpenImageIO.cmake DESTINATION ${package_folder})
+    DESTINATION ${package_folder})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/engine DESTINATION ${header_folder} FILES_MATCHING PATTERN "*.h")
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/shaders/shared DESTINATION ${header_folder}/shaders FILES_MATCHING PATTERN "*.h")
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

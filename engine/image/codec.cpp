@@ -1,40 +1,21 @@
-// The one includer of OpenImageIO.
 #include "engine/image/codec.h"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <memory>
 #include <new>
 #include <optional>
+#include <stdexcept>
 #include <string_view>
 
 #include "engine/base/error.h"
 #include "engine/image/claims.h"
+#include "engine/image/picture_library.h"
 
 namespace etalon::codec {
 namespace {
-
-const char* plugin(Format format)
-{
-    switch (format) {
-        case Format::png:
-            return "png";
-        case Format::jpeg:
-            return "jpeg";
-        case Format::webp:
-            return "webp";
-        case Format::hdr:
-            return "hdr";
-        case Format::exr:
-            return "openexr";
-    }
-    return "";
-}
 
 const char* display_name(Format format)
 {
@@ -86,77 +67,29 @@ Format require_format(std::span<const std::byte> bytes, std::span<const Format> 
 }
 
 /// What the library found in the header, which is what it will ask memory for.
-void check_spec(const OIIO::ImageSpec& spec, Format format, std::size_t file_bytes, const Limits& limits,
-                const std::string& name)
+void check_header(const Header& header, Format format, std::size_t file_bytes, const Limits& limits,
+                  const std::string& name)
 {
-    if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1)
-        throw bad(name, fmt::format("it claims {}x{} pixels", spec.width, spec.height));
-    check_claims({.width = std::uint64_t(spec.width),
-                  .height = std::uint64_t(spec.height),
-                  .channels = std::uint64_t(spec.nchannels),
-                  .pixel_bytes = spec.pixel_bytes(true)},
+    if (header.width < 1 || header.height < 1 || header.depth > 1 || header.channels.empty())
+        throw bad(name, fmt::format("it claims {}x{} pixels", header.width, header.height));
+    check_claims({.width = std::uint64_t(header.width),
+                  .height = std::uint64_t(header.height),
+                  .channels = header.channels.size(),
+                  .pixel_bytes = header.pixel_bytes},
                  file_bytes, limits, name);
     if (format != Format::exr) return;
-    if (spec.deep) throw bad(name, "it is a deep EXR", "flatten it first");
-    if (spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width ||
-        spec.height != spec.full_height)
+    if (header.deep) throw bad(name, "it is a deep EXR", "flatten it first");
+    if (header.windows_differ)
         throw bad(name, "its data window is not its display window", "pad or crop it to the display window");
     // OpenEXR wrote past its buffer for partial edge tiles (CVE-2026-63422); the distribution's package is not mended.
-    if (spec.tile_width > 0 && (spec.width % spec.tile_width != 0 || spec.height % spec.tile_height != 0))
+    if (header.tile_width > 0 && (header.width % header.tile_width != 0 || header.height % header.tile_height != 0))
         throw bad(name, "its tiles do not fill the picture", "save it with scan lines instead of tiles");
-}
-
-template <typename T>
-void read_values(OIIO::ImageInput& input, int first, int end, OIIO::TypeDesc type, std::vector<T>& out,
-                 const std::string& name)
-{
-    const OIIO::ImageSpec& spec = input.spec();
-    out.resize(std::size_t(spec.width) * std::size_t(spec.height) * std::size_t(end - first));
-    if (!input.read_image(0, 0, first, end, type, out.data())) throw bad(name, input.geterror());
-}
-
-void read_pixels(OIIO::ImageInput& input, Picture& picture, const std::string& name)
-{
-    const OIIO::ImageSpec spec = input.spec();
-    const int channels = spec.nchannels;
-    if (picture.format == Format::exr || picture.format == Format::hdr) {
-        read_values(input, 0, channels, OIIO::TypeFloat, picture.values, name);
-        for (int c = 0; c < channels; ++c)
-            if (spec.channelformat(c) == OIIO::TypeUInt32)
-                read_values(input, c, c + 1, OIIO::TypeUInt32, picture.integers[spec.channel_name(c)], name);
-    } else if (spec.format == OIIO::TypeUInt8) {
-        read_values(input, 0, channels, OIIO::TypeUInt8, picture.codes8, name);
-    } else {
-        read_values(input, 0, channels, OIIO::TypeUInt16, picture.codes16, name);
-    }
 }
 
 Picture decode_guarded(std::span<const std::byte> bytes, Format format, const Limits& limits, const std::string& name)
 {
-    OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
-    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(plugin(format));
-    if (!input)
-        throw Error(Blame::machine,
-                    fmt::format("OpenImageIO here cannot read {}: {}", display_name(format), OIIO::geterror()));
-    if (!input->set_ioproxy(&memory))
-        throw Error(Blame::machine, fmt::format("OpenImageIO here cannot read {} from memory", display_name(format)));
-    OIIO::ImageSpec config;
-    config.attribute("oiio:UnassociatedAlpha", 1);
-    OIIO::ImageSpec spec;
-    // A name of ours, never the file's: OpenImageIO reads meaning into names. The content comes from `memory`.
-    if (!input->open(fmt::format("memory.{}", plugin(format)), spec, config)) throw bad(name, input->geterror());
-    check_spec(spec, format, bytes.size(), limits, name);
-
-    Picture picture;
-    picture.format = format;
-    picture.width = spec.width;
-    picture.height = spec.height;
-    picture.channels = spec.channelnames;
-    for (const OIIO::ParamValue& value : spec.extra_attribs)
-        if (value.type() == OIIO::TypeString) picture.text[value.name().string()] = value.get_string();
-    read_pixels(*input, picture, name);
-    input->close();
-    return picture;
+    return picture_library().decode(
+        bytes, format, [&](const Header& header) { check_header(header, format, bytes.size(), limits, name); });
 }
 
 /// Replaces the premultiplied colour of a WebP picture by the file's own.
@@ -169,23 +102,16 @@ void restore_color(Picture& picture, std::span<const std::byte> bytes, const Lim
         std::copy_n(&color.codes8[3 * i], 3, &picture.codes8[4 * i]);
 }
 
-/// Writes one picture into memory with the plugin of `format`; `data` is laid out as `spec` says.
-std::vector<std::byte> encode(Format format, const OIIO::ImageSpec& spec, const void* data)
+std::vector<std::byte> encode(const Sheet& sheet)
 {
-    const auto failed = [&](const std::string& why) {
-        return Error(Blame::machine, fmt::format("cannot encode {}x{} pixels as {}: {}", spec.width, spec.height,
-                                                 display_name(format), why));
-    };
-    OIIO::Filesystem::IOVecOutput memory;
-    const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(plugin(format));
-    if (!output) throw failed(OIIO::geterror());
-    if (!output->set_ioproxy(&memory)) throw failed("its writer cannot write to memory");
-    // UNKNOWN: the data are in the file's own types already, channel by channel.
-    if (!output->open(fmt::format("memory.{}", plugin(format)), spec) ||
-        !output->write_image(OIIO::TypeUnknown, data) || !output->close())
-        throw failed(output->geterror());
-    const std::span<const std::byte> bytes = std::as_bytes(std::span(memory.buffer()));
-    return {bytes.begin(), bytes.end()};
+    try {
+        return picture_library().encode(sheet);
+    } catch (const std::runtime_error& error) {
+        throw Error(Blame::machine, fmt::format("cannot encode {}x{} pixels as {}: {}", sheet.width, sheet.height,
+                                                display_name(sheet.format), error.what()));
+    } catch (const std::logic_error& error) {
+        throw Error(Blame::machine, error.what());
+    }
 }
 
 }  // namespace
@@ -206,6 +132,8 @@ Picture decode(std::span<const std::byte> bytes, std::span<const Format> accepte
         throw;
     } catch (const std::bad_alloc&) {
         throw Error(Blame::machine, fmt::format("cannot decode {}: no memory for its pixels", name), "resize it");
+    } catch (const std::logic_error& error) {
+        throw Error(Blame::machine, error.what());
     } catch (const std::exception& exception) {
         throw bad(name, exception.what());
     }
@@ -214,18 +142,12 @@ Picture decode(std::span<const std::byte> bytes, std::span<const Format> accepte
 std::vector<std::byte> encode_exr(int width, int height, std::span<const Channel> channels,
                                   const std::map<std::string, std::string>& text)
 {
-    OIIO::ImageSpec spec(width, height, static_cast<int>(channels.size()), OIIO::TypeFloat);
-    spec.channelnames.clear();
+    Sheet sheet{.format = Format::exr, .width = width, .height = height, .text = &text};
     for (const Channel& channel : channels) {
-        spec.channelnames.push_back(channel.name);
+        sheet.channels.push_back(channel.name);
         const bool is_float = std::holds_alternative<const float*>(channel.first);
-        spec.channelformats.push_back(is_float ? OIIO::TypeFloat : OIIO::TypeUInt32);
-        if (channel.name == "A") spec.alpha_channel = static_cast<int>(spec.channelnames.size()) - 1;
+        sheet.types.push_back(is_float ? ChannelType::float32 : ChannelType::uint32);
     }
-    spec.attribute("compression", "zip");
-    spec.attribute("DateTime", "");  // else the writer says when it ran, and equal films differ in bytes
-    for (const auto& [key, value] : text) spec.attribute(key, value);
-
     const std::size_t pixels = std::size_t(width) * std::size_t(height);
     std::vector<std::uint32_t> words(pixels * channels.size());
     for (std::size_t c = 0; c < channels.size(); ++c)
@@ -235,7 +157,8 @@ std::vector<std::byte> encode_exr(int width, int height, std::span<const Channel
                     std::memcpy(&words[i * channels.size() + c], first + i * channels[c].step, sizeof(std::uint32_t));
             },
             channels[c].first);
-    return encode(Format::exr, spec, words.data());
+    sheet.data = words.data();
+    return encode(sheet);
 }
 
 std::vector<std::byte> encode_png(int width, int height, int channels, std::span<const std::uint8_t> codes,
@@ -243,11 +166,13 @@ std::vector<std::byte> encode_png(int width, int height, int channels, std::span
 {
     assume((channels == 3 || channels == 4) && width > 0 && height > 0 &&
            codes.size() == std::size_t(width) * std::size_t(height) * std::size_t(channels));
-    OIIO::ImageSpec spec(width, height, channels, OIIO::TypeUInt8);
-    spec.attribute("oiio:UnassociatedAlpha", 1);
-    spec.attribute("oiio:ColorSpace", "sRGB");
-    for (const auto& [key, value] : text) spec.attribute(key, value);
-    return encode(Format::png, spec, codes.data());
+    return encode({.format = Format::png,
+                   .width = width,
+                   .height = height,
+                   .channels = std::vector<std::string>(static_cast<std::size_t>(channels)),
+                   .types = std::vector(static_cast<std::size_t>(channels), ChannelType::code8),
+                   .data = codes.data(),
+                   .text = &text});
 }
 
 }  // namespace etalon::codec

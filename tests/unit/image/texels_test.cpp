@@ -123,6 +123,7 @@ TEST(DecodeTexelsDeathTest, says_when_memory_runs_out)
     const Bytes flat = samples::flat_webp(4096, 4096, {1, 2, 3, 4});  // 64 MiB of texels
     EXPECT_EXIT(
         {
+            decode_texels(samples::flat_webp(1, 1, {1, 2, 3, 4}), "small");  // the decoders are loaded
             test::limit_memory(std::uint64_t{40} << 20);
             try {
                 decode_texels(flat, "flat");
