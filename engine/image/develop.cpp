@@ -2,11 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
 
 #include "engine/base/error.h"
 
 namespace etalon {
 namespace {
+
+/// (IP-2)
+double luminance(const dvec3& c)
+{
+    return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
+}
 
 /// (x (x + a) - b) / (x (c x + d) + e), Stephen Hill's fit of the ACES reference and output transforms. Above 1
 /// numerator and denominator are divided by x² first: x·x would be Inf/Inf from 1e154 on (I8).
@@ -46,25 +54,41 @@ dvec3 tone_neutral(const dvec3& exposed)
     return color * (compressed / peak) * (1 - to_white) + dvec3(compressed) * to_white;
 }
 
-dvec3 apply(Tone tone, const dvec3& exposed)
+/// L/(1 + L) of luminance L, hue and saturation kept (Reinhard et al. 2002, equation 3). Divided by the greater of 1
+/// and L first: L itself may be as large as a double (I8).
+dvec3 tone_reinhard(const dvec3& exposed)
 {
-    switch (tone) {
-        case Tone::aces:
-            return tone_aces(exposed);
-        case Tone::neutral:
-            return tone_neutral(exposed);
-        case Tone::none:
-            break;
-    }
-    return exposed;
+    const double scale = std::max(1.0, std::max({exposed.x, exposed.y, exposed.z}));
+    const dvec3 c = exposed / scale;
+    return c / (1 / scale + luminance(c));
 }
 
-/// 2^EV; for whole EV a power of two, so that EV and -EV undo each other bit for bit (I9).
-double exposure_factor(double ev)
+/// Troy Sobotka's AgX: log2 of light between -12.47 and 4.03 EV in narrowed primaries, Benjamin Wrensch's polynomial
+/// for the curve of its default look, and back.
+dvec3 tone_agx(const dvec3& exposed)
 {
-    if (!(std::abs(ev) <= 1000))
-        throw Error(Blame::input, "the exposure must be a number of EV between -1000 and 1000");
-    return ev == std::trunc(ev) ? std::ldexp(1.0, int(ev)) : std::exp2(ev);
+    const dmat3 rec2020_from_srgb(dvec3(0.6274, 0.0691, 0.0164), dvec3(0.3293, 0.9195, 0.0880),
+                                  dvec3(0.0433, 0.0113, 0.8956));
+    const dmat3 srgb_from_rec2020(dvec3(1.6605, -0.1246, -0.0182), dvec3(-0.5876, 1.1329, -0.1006),
+                                  dvec3(-0.0728, -0.0083, 1.1187));
+    const dmat3 inset(dvec3(0.856627153315983, 0.137318972929847, 0.11189821299995),
+                      dvec3(0.0951212405381588, 0.761241990602591, 0.0767994186031903),
+                      dvec3(0.0482516061458583, 0.101439036467562, 0.811302368396859));
+    const dmat3 outset(dvec3(1.1271005818144368, -0.1413297634984383, -0.14132976349843826),
+                       dvec3(-0.11060664309660323, 1.157823702216272, -0.11060664309660294),
+                       dvec3(-0.016493938717834573, -0.016493938717834257, 1.2519364065950405));
+    constexpr double kLeast = -12.47393, kMost = 4.026069;
+    constexpr double kCurve[] = {-0.00232, 0.1191, 0.4298, -6.868, 31.96, -40.14, 15.5};
+    dvec3 curved = inset * (rec2020_from_srgb * exposed);
+    for (int c = 0; c < 3; ++c) {
+        const double x = std::clamp((std::log2(std::max(curved[c], 1e-10)) - kLeast) / (kMost - kLeast), 0.0, 1.0);
+        curved[c] = 0;
+        for (auto factor = std::rbegin(kCurve); factor != std::rend(kCurve); ++factor)
+            curved[c] = curved[c] * x + *factor;
+    }
+    dvec3 linear = outset * curved;
+    for (int c = 0; c < 3; ++c) linear[c] = std::pow(std::max(linear[c], 0.0), 2.2);
+    return srgb_from_rec2020 * linear;
 }
 
 }  // namespace
@@ -79,6 +103,58 @@ double linear_from_srgb(double coded)
 {
     if (coded < 0) return -linear_from_srgb(-coded);
     return coded <= 0.04045 ? coded / 12.92 : std::pow((coded + 0.055) / 1.055, 2.4);
+}
+
+double exposure_factor(double ev)
+{
+    if (!(std::abs(ev) <= 1000))
+        throw Error(Blame::input, "the exposure must be a number of EV between -1000 and 1000");
+    return ev == std::trunc(ev) ? std::ldexp(1.0, int(ev)) : std::exp2(ev);
+}
+
+dvec3 apply_tone(Tone tone, const dvec3& exposed)
+{
+    switch (tone) {
+        case Tone::aces:
+            return tone_aces(exposed);
+        case Tone::neutral:
+            return tone_neutral(exposed);
+        case Tone::reinhard:
+            return tone_reinhard(exposed);
+        case Tone::agx:
+            return tone_agx(exposed);
+        case Tone::none:
+            break;
+    }
+    return exposed;
+}
+
+double automatic_exposure(const Film& film)
+{
+    // Sixteen bins an octave, split evenly: scaling the light by a power of two moves every count alike.
+    constexpr int kBins = 16;
+    std::map<int, double> counts;  // by 16 · exponent + bin
+    double total = 0;
+    for (std::size_t i = 0; i < film.mean.size(); ++i) {
+        const dvec3 radiance(film.mean[i]);
+        if (!is_finite(radiance) || !std::isfinite(film.alpha[i])) continue;
+        const double y = luminance(radiance);
+        if (!(y >= double(std::numeric_limits<float>::min()))) continue;
+        int exponent = 0;
+        const double mantissa = 2 * std::frexp(y, &exponent);  // [1, 2)
+        counts[kBins * (exponent - 1) + int((mantissa - 1) * kBins)] += 1;
+        total += 1;
+    }
+    if (total == 0) return 0;
+    const double low = 0.1 * total, high = 0.9 * total;
+    double before = 0, sum = 0;
+    for (const auto& [bin, count] : counts) {
+        const int exponent = int(std::floor(bin / double(kBins)));
+        const double middle = exponent + std::log2(1 + (bin - kBins * exponent + 0.5) / kBins);
+        sum += middle * std::max(0.0, std::min(before + count, high) - std::max(before, low));
+        before += count;
+    }
+    return std::clamp(std::log2(0.18) - sum / (high - low), -100.0, 100.0);
 }
 
 Image develop(const Film& film, const DevelopSettings& settings)
@@ -97,7 +173,7 @@ Image develop(const Film& film, const DevelopSettings& settings)
         const double coverage = std::clamp(alpha, 0.0, 1.0);
         // The film is premultiplied; a pixel without coverage has no colour to speak of beyond what it holds.
         const dvec3 color = coverage > 0 ? radiance / coverage : radiance;
-        const dvec3 toned = apply(settings.tone, glm::max(color * factor, dvec3(0)));
+        const dvec3 toned = apply_tone(settings.tone, glm::max(color * factor, dvec3(0)));
         for (int c = 0; c < 3; ++c) pixel[c] = float(srgb_from_linear(std::clamp(toned[c], 0.0, 1.0)));
         pixel[3] = float(coverage);
     }

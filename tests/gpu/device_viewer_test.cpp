@@ -121,7 +121,7 @@ TEST_F(DeviceDisplay, develops_as_the_host_does)
                                   .name = "film"});
     const gpu::ImagePart all{.texels = std::as_bytes(std::span(texels))};
     gpu::upload(device(), picture, std::span(&all, 1));
-    for (const Tone tone : {Tone::none, Tone::aces, Tone::neutral})
+    for (const Tone tone : {Tone::none, Tone::aces, Tone::neutral, Tone::reinhard, Tone::agx})
         for (const double exposure : {-2.0, 0.0, 1.5}) {
             const DevelopSettings settings{.exposure = exposure, .tone = tone};
             const Image host = develop(film, settings);
