@@ -112,6 +112,25 @@ void FilmSum::add_block(std::span<const float> mean, std::span<const float> m2, 
     samples_ += count;
 }
 
+std::vector<double> FilmSum::state() const
+{
+    std::vector<double> out(mean_);
+    out.insert(out.end(), m2_.begin(), m2_.end());
+    out.insert(out.end(), alpha_.begin(), alpha_.end());
+    return out;
+}
+
+void FilmSum::restore(std::span<const double> state, std::uint64_t samples)
+{
+    if (state.size() != mean_.size() + m2_.size() + alpha_.size())
+        throw Error(Blame::input, "a film cannot go on from the state of one of another size");
+    for (std::vector<double>* part : {&mean_, &m2_, &alpha_}) {
+        std::copy_n(state.begin(), part->size(), part->begin());
+        state = state.subspan(part->size());
+    }
+    samples_ = samples;
+}
+
 Film FilmSum::film() const
 {
     Film film;

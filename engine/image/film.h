@@ -61,6 +61,10 @@ class FilmSum {
     void add_block(std::span<const float> mean, std::span<const float> m2, std::span<const float> alpha,
                    std::uint64_t count);
     std::uint64_t samples() const { return samples_; }
+    /// All that it holds, to the last bit: means, M2, alphas, 7 numbers a pixel in all.
+    std::vector<double> state() const;
+    /// Goes on from what another one's state() was after so many samples. Error(input) when it is of another size.
+    void restore(std::span<const double> state, std::uint64_t samples);
     /// Mean, variance of the mean (empty under 2 samples), alpha and count.
     Film film() const;
 

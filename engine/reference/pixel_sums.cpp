@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "engine/base/error.h"
+
 namespace etalon::reference {
 
 void PixelSum::add(const dvec3& radiance, double alpha)
@@ -23,6 +25,57 @@ dvec3 PixelSum::variance_of_mean() const
     if (count_ < 2) return dvec3(0);
     const double n = static_cast<double>(count_);
     return m2_ / (n - 1) / n;
+}
+
+void PixelSum::save(std::span<double> numbers) const
+{
+    assume(numbers.size() == kNumbers);
+    for (int c = 0; c < 3; ++c) {
+        numbers[static_cast<std::size_t>(c)] = mean_[c];
+        numbers[static_cast<std::size_t>(3 + c)] = m2_[c];
+    }
+    numbers[6] = alpha_;
+    numbers[7] = static_cast<double>(count_);  // exact: under 2^53
+    numbers[8] = static_cast<double>(nonfinite_);
+}
+
+void PixelSum::restore(std::span<const double> numbers)
+{
+    assume(numbers.size() == kNumbers);
+    for (int c = 0; c < 3; ++c) {
+        mean_[c] = numbers[static_cast<std::size_t>(c)];
+        m2_[c] = numbers[static_cast<std::size_t>(3 + c)];
+    }
+    alpha_ = numbers[6];
+    count_ = static_cast<std::uint64_t>(numbers[7]);
+    nonfinite_ = static_cast<std::uint64_t>(numbers[8]);
+}
+
+FilmState state_of(const std::vector<PixelSum>& sums, int width, int height, std::uint64_t samples)
+{
+    FilmState state{.of = {},
+                    .width = width,
+                    .height = height,
+                    .samples = samples,
+                    .sums = std::vector<double>(PixelSum::kNumbers * sums.size()),
+                    .block = {}};
+    std::span<double> rest(state.sums);
+    for (const PixelSum& sum : sums) {
+        sum.save(rest.first(PixelSum::kNumbers));
+        rest = rest.subspan(PixelSum::kNumbers);
+    }
+    return state;
+}
+
+void restore(std::vector<PixelSum>& sums, const FilmState& state)
+{
+    if (state.sums.size() != PixelSum::kNumbers * sums.size() || state.block_samples > 0)
+        throw Error(Blame::input, "this picture cannot go on from the state of another one");
+    std::span<const double> rest(state.sums);
+    for (PixelSum& sum : sums) {
+        sum.restore(rest.first(PixelSum::kNumbers));
+        rest = rest.subspan(PixelSum::kNumbers);
+    }
 }
 
 Film film_of(const std::vector<PixelSum>& sums, int width, int height, std::uint64_t samples)

@@ -1,8 +1,10 @@
 #pragma once
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "engine/image/film.h"
+#include "engine/image/film_state.h"
 
 namespace etalon::reference {
 
@@ -18,6 +20,11 @@ class PixelSum {
     double alpha() const { return alpha_; }
     dvec3 variance_of_mean() const;  ///< nit²; 0 under two samples
 
+    static constexpr std::size_t kNumbers = 9;
+    /// All that it holds, as kNumbers numbers, and back: to the last bit.
+    void save(std::span<double> numbers) const;
+    void restore(std::span<const double> numbers);
+
  private:
     dvec3 mean_{0}, m2_{0};
     double alpha_ = 0;
@@ -27,6 +34,10 @@ class PixelSum {
 
 /// The film of `sums`, `samples` a pixel as the caller asked for (what was left out is in Film::nonfinite).
 Film film_of(const std::vector<PixelSum>& sums, int width, int height, std::uint64_t samples);
+
+/// What those sums are, to be taken up by restore(): `sums` of the same number. Error(input) when it is another.
+FilmState state_of(const std::vector<PixelSum>& sums, int width, int height, std::uint64_t samples);
+void restore(std::vector<PixelSum>& sums, const FilmState& state);
 
 /// √(mean variance of the mean) / mean radiance over the picture: what progress reports. 0 for a black picture.
 double relative_error(const std::vector<PixelSum>& sums);

@@ -4,6 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
+#include "engine/image/shard.h"
 #include "engine/reference/aov.h"
 #include "engine/reference/path.h"
 #include "engine/reference/pixel_sums.h"
@@ -38,13 +39,20 @@ void check_samples(std::uint64_t spp)
         throw Error(Blame::input, "samples per pixel must be 1 … 4294967295, not " + std::to_string(spp));
 }
 
+double seconds_since(std::chrono::steady_clock::time_point start)
+{
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
 /// The samples of a picture so far. A pass gives every pixel the same number more, or, stopped, leaves all as it was.
 class Accumulation {
  public:
-    Accumulation(const PathTracer& tracer, int width, int height, std::uint64_t seed, unsigned threads)
+    /// Of rows first_row … end_row - 1.
+    Accumulation(const PathTracer& tracer, int width, int first_row, int end_row, std::uint64_t seed, unsigned threads)
         : tracer_(&tracer),
           width_(static_cast<std::size_t>(width)),
-          height_(static_cast<std::size_t>(height)),
+          first_row_(static_cast<std::size_t>(first_row)),
+          height_(static_cast<std::size_t>(end_row - first_row)),
           seed_(seed),
           threads_(threads),
           sums_(width_ * height_),
@@ -71,9 +79,26 @@ class Accumulation {
         return true;
     }
 
+    FilmState state() const
+    {
+        FilmState out = state_of(sums_, static_cast<int>(width_), static_cast<int>(height_), samples_);
+        out.truncated = truncated_;
+        return out;
+    }
+    void resume(const FilmState& state)
+    {
+        restore(sums_, state);
+        samples_ = state.samples;
+        truncated_ = state.truncated;
+    }
     const std::vector<PixelSum>& sums() const { return sums_; }
+    Film film() const
+    {
+        Film out = film_of(sums_, static_cast<int>(width_), static_cast<int>(height_), samples_);
+        out.truncated = truncated_;
+        return out;
+    }
     std::uint64_t samples() const { return samples_; }
-    std::uint64_t truncated() const { return truncated_; }
 
  private:
     std::uint64_t render_tile(std::size_t tile_x, std::size_t tile_y, std::uint64_t count)
@@ -83,14 +108,14 @@ class Accumulation {
             for (std::size_t x = tile_x * kTile; x < std::min(width_, (tile_x + 1) * kTile); ++x) {
                 const std::size_t pixel = y * width_ + x;
                 PixelSum sum = sums_[pixel];
-                truncated += add_samples(sum, *tracer_, pixel, width_, seed_, samples_, count);
+                truncated += add_samples(sum, *tracer_, first_row_ * width_ + pixel, width_, seed_, samples_, count);
                 next_[pixel] = sum;
             }
         return truncated;
     }
 
     const PathTracer* tracer_;
-    std::size_t width_, height_;
+    std::size_t width_, first_row_, height_;
     std::uint64_t seed_;
     unsigned threads_;
     std::vector<PixelSum> sums_, next_;
@@ -101,32 +126,44 @@ class Accumulation {
 }  // namespace
 
 Film render_path(const PosedScene& posed, const Requirements& required, const RenderSettings& settings,
-                 const Progress& progress)
+                 const Progress& progress, const Checkpoints& checkpoints)
 {
     assume(posed.scene != nullptr && posed.view.width > 0 && posed.view.height > 0);
     check_samples(settings.spp);
+    check_samples(checkpoints, settings.spp);
+    const int first_row = settings.shard.first_row(posed.view.height);
+    const int end_row = settings.shard.end_row(posed.view.height);
+    if (first_row == end_row)
+        throw Error(Blame::input, "a part of a picture has no rows", "make no more parts than the picture has rows");
     progress.report({.stage = "building the BVH", .fraction = 0, .error = {}, .samples = {}});
     const World world(posed, required.texture_used, false);
     const PathTracer tracer(posed, world, settings);
-    Accumulation picture(tracer, posed.view.width, posed.view.height, settings.seed, settings.threads);
+    Accumulation picture(tracer, posed.view.width, first_row, end_row, settings.seed, settings.threads);
+    if (checkpoints.from != nullptr) picture.resume(*checkpoints.from);
 
     // How many samples a pass has never changes a bit: each is a function of its number alone, and they are added in
     // order.
     std::uint64_t count = 1;
+    auto last_kept = std::chrono::steady_clock::now();
     while (picture.samples() < settings.spp && !(picture.samples() > 0 && progress.stopped())) {
         const auto begin = std::chrono::steady_clock::now();
         const bool may_stop = picture.samples() > 0;  // a picture of no sample would be none
         if (!picture.pass(std::min(count, settings.spp - picture.samples()), progress, may_stop)) break;
-        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-        if (seconds < kSecondsPerPass / 2) count *= 2;
+        if (seconds_since(begin) < kSecondsPerPass / 2) count *= 2;
         progress.report({.stage = "path tracing",
                          .fraction = static_cast<double>(picture.samples()) / static_cast<double>(settings.spp),
                          .error = picture.samples() < 2 ? std::nullopt : std::optional(relative_error(picture.sums())),
                          .samples = picture.samples()});
+        if (checkpoints.keep && seconds_since(last_kept) > checkpoints.seconds) {
+            checkpoints.keep(picture.state());
+            last_kept = std::chrono::steady_clock::now();
+        }
     }
-    Film film = film_of(picture.sums(), posed.view.width, posed.view.height, picture.samples());
-    film.truncated = picture.truncated();
-    if (settings.aovs) film.aovs = render_aovs(world, tracer.camera(), false, settings.threads);
+    if (checkpoints.keep) checkpoints.keep(picture.state());
+    Film film = picture.film();
+    if (settings.aovs)
+        film.aovs =
+            rows_of(render_aovs(world, tracer.camera(), false, settings.threads), first_row, end_row, posed.view.width);
     return film;
 }
 

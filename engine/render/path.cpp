@@ -1,12 +1,9 @@
-#include "engine/render/path.h"
-
 #include <algorithm>
-#include <bit>
 #include <chrono>
 #include <cmath>
 
 #include "engine/base/error.h"
-#include "engine/render/path_kernels.h"
+#include "engine/render/path_state.h"
 
 namespace etalon {
 namespace {
@@ -15,18 +12,11 @@ using gpu::Commands;
 using gpu::Work;
 using shared::PathPush;
 
-/// Paths in flight at once: more hide the cost of a dispatch (some 20 µs on software devices), fewer stay in its
-/// caches.
-constexpr std::uint32_t kWaveCapacity = 1u << 17;
 constexpr std::uint32_t kSmallestWave = 1u << 12;
-/// Of a picture's first wave, before the scene's speed is known: a stop must not wait for long even where it is slow.
-constexpr std::uint32_t kFirstWave = 1u << 14;
 /// Device time that a step aims at: far below any watchdog, short enough that stopping feels immediate.
 constexpr double kStepSeconds = 0.05;
 /// Segments traced by one submission at most, so that a deep path does not make a long one.
 constexpr std::uint32_t kSegmentsPerSubmit = 16;
-/// Samples a pixel that are summed in float before they are merged in double (M1); counts of a block fit 16 bits.
-constexpr std::uint32_t kBlockSamples = 256;
 constexpr std::uint32_t kBandPixels = 1u << 22;
 constexpr std::uint32_t kMostDepth = 1u << 16;
 
@@ -37,84 +27,40 @@ double seconds_since(std::chrono::steady_clock::time_point start)
 
 }  // namespace
 
-struct PathTracer::State {
-    gpu::Device* device;
-    bool wants_aovs;
-    PathScene scene;
-    PathKernels kernels;
-    PathQueues queues;
-    gpu::Buffer frame;
-    gpu::Buffer aovs;
-    std::vector<PathBand> bands;
-    std::uint32_t width = 0, height = 0;
-    std::uint32_t wave = kFirstWave;  ///< paths of the next wave, adapted to the scene's speed
-
-    PathSamples total{.sum = {1, 1}};  ///< of completed blocks
-    std::uint64_t first_of_block = 0;  ///< sample number
-    std::uint32_t in_block = 0;        ///< samples of completed passes of this block
-
-    std::uint32_t in_pass = 0;  ///< samples a pixel of the pass at hand; 0: none
-    std::size_t band = 0;       ///< where the pass at hand stands
-    std::uint32_t next_slot = 0;
-    std::uint64_t slots_done = 0;
-
-    std::vector<bool> unreached;  ///< pixels without samples, after a stop in the first pass; else empty
-
-    bool timing = false;
-    std::vector<KernelTime> times;
-
-    State(gpu::Device& d, const PosedScene& posed, const Requirements& required, const RenderSettings& settings,
-          const Progress& progress, Traversal traversal)
-        : device(&d),
-          wants_aovs(settings.aovs),
-          scene(make_path_scene(d, posed, required, settings, progress)),
-          kernels(make_path_kernels(d, scene, traversal == Traversal::exact)),
-          frame(d, {.size = sizeof(shared::PathFrame), .name = "path frame"})
-    {
-        scene.frame.max_depth = std::min(scene.frame.max_depth, kMostDepth);
-        queues = make_path_queues(d, kWaveCapacity, scene.frame.max_depth, scene.features.volume);
-    }
-
-    void resize(const View& view);
-    void begin_pass(std::uint64_t most_samples);
-    void run_wave(PathBand& at, std::uint32_t count);
-    void end_pass();
-    void mark_unreached();
-    void trace_from_camera(Commands& commands, PathBand& at, const PathPush& push);
-    void bounce(Commands& commands, PathBand& at, PathPush push);
-    void launch(Commands& commands, PathBand& at, const gpu::ComputePipeline& kernel, const PathPush& push,
-                std::uint32_t groups);
-    void launch_indirect(Commands& commands, PathBand& at, const gpu::ComputePipeline& kernel, const PathPush& push,
-                         std::uint32_t row);
-    void trace(Commands& commands, PathBand& at, const gpu::ComputePipeline& kernel, const gpu::ComputePipeline& retry,
-               const PathPush& push, std::uint32_t retry_row, std::optional<std::uint32_t> row);
-    void finish(Commands& commands);
-    void read_block(FilmSum& sum, std::uint64_t& lost, std::uint64_t& cut) const;
-    void read_aovs(Film& film);
-    std::uint32_t trace_groups(std::uint32_t rays) const
-    {
-        const std::uint32_t each = shared::kPathWorkgroup * kernels.rays_per_lane;
-        return (rays + each - 1) / each;
-    }
-};
+PathTracer::State::State(gpu::Device& d, const PosedScene& posed, const Requirements& required,
+                         const RenderSettings& settings, const Progress& progress, Traversal traversal)
+    : device(&d),
+      wants_aovs(settings.aovs),
+      shard(settings.shard),
+      scene(make_path_scene(d, posed, required, settings, progress)),
+      kernels(make_path_kernels(d, scene, traversal == Traversal::exact)),
+      frame(d, {.size = sizeof(shared::PathFrame), .name = "path frame"})
+{
+    scene.frame.max_depth = std::min(scene.frame.max_depth, kMostDepth);
+    queues = make_path_queues(d, kWaveCapacity, scene.frame.max_depth, scene.features.volume);
+}
 
 void PathTracer::State::resize(const View& view)
 {
     if (view.width <= 0 || view.height <= 0)
         throw Error(Blame::input, "a picture of no pixels cannot be rendered", "give a size of at least 1x1");
     const auto w = static_cast<std::uint32_t>(view.width);
-    const auto h = static_cast<std::uint32_t>(view.height);
-    if (!bands.empty() && w == width && h == height) return;
+    const auto from = static_cast<std::uint32_t>(shard.first_row(view.height));
+    const auto end = static_cast<std::uint32_t>(shard.end_row(view.height));
+    if (from == end)
+        throw Error(Blame::input, "a part of a picture has no rows", "make no more parts than the picture has rows");
+    if (!bands.empty() && w == width && end - from == height && from == first_row) return;
     width = w;
-    height = h;
+    height = end - from;
+    first_row = from;
     bands.clear();
     // Whole strips of 8 rows, in which the paths are ordered (generate.comp).
     const std::uint32_t rows = std::max(kBandPixels / w / 8 * 8, 8u);
-    const std::uint64_t pixels = std::uint64_t{w} * h;
+    const std::uint64_t pixels = std::uint64_t{w} * height;
     aovs = gpu::Buffer(*device, {.size = wants_aovs ? 64 * std::min<std::uint64_t>(pixels, std::uint64_t{rows} * w) : 0,
                                  .name = "AOVs"});
-    for (std::uint32_t row = 0; row < h; row += rows) {
-        const std::uint32_t count = std::min(rows, h - row) * w;
+    for (std::uint32_t row = from; row < end; row += rows) {
+        const std::uint32_t count = std::min(rows, end - row) * w;
         bands.push_back(make_path_band(*device, scene, frame, kernels, queues, row * w, count,
                                        std::max(count, kWaveCapacity), aovs));
     }
@@ -273,98 +219,6 @@ void PathTracer::State::end_pass()
     in_pass = 0;
 }
 
-/// Which pixels the pass at hand has not come to, by the order of generate.comp: columns of strips of 8 rows.
-void PathTracer::State::mark_unreached()
-{
-    unreached.assign(std::size_t{width} * height, false);
-    for (std::size_t b = band; b < bands.size(); ++b) {
-        const PathBand& at = bands[b];
-        const std::uint32_t rows = at.pixel_count / width;
-        for (std::uint32_t k = b == band ? next_slot : 0; k < at.pixel_count; ++k) {
-            const std::uint32_t strip = k / (8 * width);
-            const std::uint32_t within = k - strip * 8 * width;
-            const std::uint32_t tall = std::min(8u, rows - strip * 8);
-            unreached[at.first_pixel + (strip * 8 + within % tall) * width + within / tall] = true;
-        }
-    }
-}
-
-/// Adds the block on the device to `sum`; samples that were not finite to `lost`, paths cut by the depth limit to
-/// `cut`.
-void PathTracer::State::read_block(FilmSum& sum, std::uint64_t& lost, std::uint64_t& cut) const
-{
-    const std::size_t pixels = std::size_t{width} * height;
-    std::vector<float> mean(3 * pixels), m2(3 * pixels), alpha(pixels);
-    for (const PathBand& at : bands) {
-        const std::vector<vec4> means = gpu::read_back<vec4>(*device, at.mean, at.pixel_count);
-        const std::vector<vec4> deviations = gpu::read_back<vec4>(*device, at.m2, at.pixel_count);
-        for (std::size_t i = 0; i < at.pixel_count; ++i) {
-            const std::size_t pixel = at.first_pixel + i;
-            if (!unreached.empty() && unreached[pixel]) continue;
-            const std::uint32_t counts = std::bit_cast<std::uint32_t>(deviations[i].w);
-            const std::uint32_t bad = counts & 0xffffu;
-            lost += bad;
-            cut += counts >> 16;
-            // A pixel that lost samples stands for as many as the others, with the spread of those it has (M13).
-            const double scale = bad < in_block ? double(in_block) / (in_block - bad) : 0;
-            for (std::size_t c = 0; c < 3; ++c) {
-                mean[3 * pixel + c] = means[i][int(c)];
-                m2[3 * pixel + c] = static_cast<float>(deviations[i][int(c)] * scale);
-            }
-            alpha[pixel] = means[i].w;
-        }
-    }
-    sum.add_block(mean, m2, alpha, in_block);
-}
-
-void PathTracer::State::read_aovs(Film& film)
-{
-    const std::size_t pixels = std::size_t{width} * height;
-    Aovs& out = film.aovs;
-    out.depth.resize(pixels);
-    out.normal.resize(pixels);
-    out.albedo.resize(pixels);
-    out.emission.resize(pixels);
-    out.object_id.resize(pixels);
-    out.material_id.resize(pixels);
-    out.uv.resize(pixels);
-    for (PathBand& at : bands) {
-        for (std::uint32_t slot = 0; slot < at.pixel_count; slot += kWaveCapacity) {
-            PathPush push{};
-            push.first_slot = slot;
-            push.slot_count = std::min(kWaveCapacity, at.pixel_count - slot);
-            push.pixel_count = at.pixel_count;
-            push.first_pixel = at.first_pixel;
-            PathPush first = push;
-            first.iteration = 1;
-            const std::uint32_t groups = (push.slot_count + shared::kPathWorkgroup - 1) / shared::kPathWorkgroup;
-            Commands commands(*device, "path AOVs");
-            commands.fill(queues.counters, 0);
-            commands.barrier(Work::copy, Work::copy);
-            commands.fill(queues.counters, push.slot_count, 4 * std::uint64_t{shared::kCountPaths}, 4);
-            launch(commands, at, kernels.generate_centres, first, groups);
-            commands.barrier(Work::all, Work::compute);
-            trace(commands, at, kernels.trace_centres, kernels.retry_centres, push, shared::kDispatchRetryPaths,
-                  std::nullopt);
-            commands.barrier(Work::compute, Work::compute);
-            launch(commands, at, kernels.aovs, push, groups);
-            finish(commands);
-        }
-        const std::vector<vec4> values = gpu::read_back<vec4>(*device, aovs, 4 * std::size_t{at.pixel_count});
-        for (std::size_t i = 0; i < at.pixel_count; ++i) {
-            const std::size_t pixel = at.first_pixel + i;
-            const vec4* v = &values[4 * i];
-            out.normal[pixel] = vec3(v[0]);
-            out.depth[pixel] = v[0].w;
-            out.albedo[pixel] = vec3(v[1]);
-            out.object_id[pixel] = std::bit_cast<std::uint32_t>(v[1].w);
-            out.emission[pixel] = vec3(v[2]);
-            out.material_id[pixel] = std::bit_cast<std::uint32_t>(v[2].w);
-            out.uv[pixel] = vec2(v[3]);
-        }
-    }
-}
-
 PathTracer::PathTracer(gpu::Device& device, const PosedScene& posed, const Requirements& required,
                        const RenderSettings& settings, const Progress& progress, Traversal traversal)
     : state_(std::make_unique<State>(device, posed, required, settings, progress, traversal))
@@ -382,7 +236,7 @@ void PathTracer::start(const View& view)
     s.resize(view);
     set_view(s.scene.frame, view, s.scene.origin);
     gpu::upload(*s.device, s.frame, std::as_bytes(std::span(&s.scene.frame, 1)));
-    resume({.sum = {view.width, view.height}});
+    resume({.sum = {view.width, static_cast<int>(s.height)}});
 }
 
 PathSamples PathTracer::kept() const
@@ -446,20 +300,6 @@ double PathTracer::pass_fraction() const
     const State& s = *state_;
     if (s.in_pass == 0) return 0;
     return double(s.slots_done) / (double(s.width) * s.height * s.in_pass);
-}
-
-Film PathTracer::film()
-{
-    State& s = *state_;
-    PathSamples all = s.total;
-    if (s.in_block > 0) s.read_block(all.sum, all.nonfinite, all.truncated);
-    Film film = all.sum.film();
-    film.nonfinite = all.nonfinite;
-    film.truncated = all.truncated;
-    if (s.wants_aovs) s.read_aovs(film);
-    if (!s.unreached.empty())
-        film.metadata["pixels.unreached"] = std::to_string(std::count(s.unreached.begin(), s.unreached.end(), true));
-    return film;
 }
 
 void PathTracer::measure_kernels(bool on)

@@ -6,6 +6,7 @@
 #include "engine/base/progress.h"
 #include "engine/gpu/device.h"
 #include "engine/image/film.h"
+#include "engine/image/film_state.h"
 #include "engine/scene/pose.h"
 #include "engine/scene/requirements.h"
 #include "engine/scene/settings.h"
@@ -32,7 +33,7 @@ enum class Traversal { by_device, exact };
 /// The path tracer's state on a device: docs/shading.md §3 as a wavefront (docs/architecture.md). The scene is
 /// flattened, its BVH built and everything `required` uploaded once; pictures of any view follow. `posed` (with its
 /// scene) must outlive it. The same picture to the bit whatever the number of steps, threads or the times it is read in
-/// between.
+/// between. With settings.shard the film has the rows of that part alone.
 class PathTracer {
  public:
     /// Throws Error(machine) when the device lacks memory, Error(input) when `required` lacks a material's model.
@@ -63,6 +64,10 @@ class PathTracer {
     /// bits.
     PathSamples kept() const;
     void resume(const PathSamples& kept);
+    /// The same to the last completed pass, read from the device; `of` is empty. Error(input) when a state is not of a
+    /// picture of this size.
+    FilmState state() const;
+    void resume(const FilmState& state);
     /// Off by default: timing makes each kernel wait for the one before.
     void measure_kernels(bool on);
     /// Sums since construction, while measure_kernels was on.

@@ -15,8 +15,9 @@ double seconds_since(std::chrono::steady_clock::time_point start)
 }
 
 /// Adds samples until there are enough or `progress` stops it.
-void trace(PathTracer& tracer, const RenderSettings& settings, const Progress& progress)
+void trace(PathTracer& tracer, const RenderSettings& settings, const Progress& progress, const Checkpoints& checkpoints)
 {
+    auto last_kept = std::chrono::steady_clock::now();
     auto last_report = std::chrono::steady_clock::now();
     ProgressUpdate update;
     update.stage = "path tracing";
@@ -33,15 +34,24 @@ void trace(PathTracer& tracer, const RenderSettings& settings, const Progress& p
             last_report = std::chrono::steady_clock::now();
         }
         progress.report(update);
+        if (passed && checkpoints.keep && seconds_since(last_kept) > checkpoints.seconds) {
+            checkpoints.keep(tracer.state());
+            last_kept = std::chrono::steady_clock::now();
+        }
     }
-    if (tracer.samples() == 0) tracer.stop_pass();
+    if (tracer.samples() == 0) {
+        tracer.stop_pass();
+    } else if (checkpoints.keep) {
+        checkpoints.keep(tracer.state());
+    }
 }
 
 }  // namespace
 
 Film render_path(gpu::Device& device, const PosedScene& posed, const Requirements& required,
-                 const RenderSettings& settings, const Progress& progress)
+                 const RenderSettings& settings, const Progress& progress, const Checkpoints& checkpoints)
 {
+    check_samples(checkpoints, settings.spp);
     std::optional<PathSamples> kept;
     for (bool renewed = false;; renewed = true) {
         if (renewed) {
@@ -53,8 +63,9 @@ Film render_path(gpu::Device& device, const PosedScene& posed, const Requirement
         try {
             tracer.emplace(device, posed, required, settings, progress);
             const double preparing = seconds_since(begin);
+            if (checkpoints.from != nullptr) tracer->resume(*checkpoints.from);
             if (kept) tracer->resume(*kept);
-            trace(*tracer, settings, progress);
+            trace(*tracer, settings, progress, checkpoints);
             const double tracing = seconds_since(begin) - preparing;
             Film film = tracer->film();
             film.metadata["milliseconds.scene"] = fmt::format("{:.3f}", 1e3 * preparing);

@@ -2,6 +2,7 @@
 #include "engine/base/progress.h"
 #include "engine/gpu/device.h"
 #include "engine/image/film.h"
+#include "engine/image/film_state.h"
 #include "engine/scene/pose.h"
 #include "engine/scene/requirements.h"
 #include "engine/scene/settings.h"
@@ -16,8 +17,9 @@ Film render_raster(gpu::Device& device, const PosedScene& posed, const Requireme
 /// The Vulkan compute path tracer: docs/shading.md §3. Bounded work per submit; stops within about 50 ms of device
 /// time when `progress` says so and returns what it has (PathTracer::stop_pass). When the device is lost it is renewed
 /// once, so that nothing else may be alive on it, and the picture goes on from the last 256 samples a pixel, to the
-/// same bits; a second loss is DeviceLost.
+/// same bits; a second loss is DeviceLost. With `checkpoints` it takes up a film and hands out its states: the same
+/// bits as in one run. Error(input) when the state has more samples than settings.spp.
 Film render_path(gpu::Device& device, const PosedScene& posed, const Requirements& required,
-                 const RenderSettings& settings, const Progress& progress);
+                 const RenderSettings& settings, const Progress& progress, const Checkpoints& checkpoints = {});
 
 }  // namespace etalon

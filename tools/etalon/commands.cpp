@@ -55,6 +55,7 @@ Command render_command()
              light_rows(),
              shading_rows(),
              sampling_rows(),
+             part_rows(),
              develop_rows(),
              device_rows(),
              load_rows(),
@@ -65,6 +66,8 @@ Command render_command()
                       "A path-traced picture, with its radiance and error"},
                      {"etalon render builtin:cornell --renderer path --max-error 0.05 -o cornell.exr",
                       "As many samples as an error of 5% needs"},
+                     {"etalon render builtin:cornell --renderer path --spp 4096 --resume cornell.state -o cornell.exr",
+                      "What is interrupted goes on where it stood when the same is typed again"},
                      {"etalon render a.glb b.glb --size 640x480 -o 'out/{name}.png'",
                       "Several scenes with one device start-up"},
                      {"etalon render fox.glb --animation Run --frames 0:47 --fps 24 -o 'out/####.png'",
@@ -74,6 +77,35 @@ Command render_command()
             "0 written; 1 a finding under --strict; 2 bad usage or input; 3 the machine cannot; 130 interrupted (143 "
             "by SIGTERM, 129 by SIGHUP)",
         .run = render,
+    };
+}
+
+Command merge_command()
+{
+    return {
+        .name = "merge",
+        .summary = "Make one picture of shards",
+        .description =
+            "Puts the films that `etalon render --shard I/N -o FILE.exr` wrote together again, in any order. The "
+            "picture has the bits that one run would have given it. A shard that is missing is named; one that is "
+            "given twice, damaged, or of another picture is refused.",
+        .argument = "SHARD.exr...",
+        .least = 1,
+        .most = 1'000'000,
+        .completes = Completes::file,
+        .options =
+            together({{{.name = "output",
+                        .letter = 'o',
+                        .argument = "FILE",
+                        .help = "Where to: .exr, .png (developed) or - (PNG on standard output); may be repeated",
+                        .completes = Completes::file,
+                        .repeats = true,
+                        .heading = "Output"}},
+                      develop_rows(),
+                      json_rows()}),
+        .examples = {{"etalon merge part1.exr part2.exr part3.exr -o whole.exr", "Three shards as one film"}},
+        .exit_codes = "0 merged; 2 bad usage or input; 3 the machine cannot",
+        .run = merge,
     };
 }
 
@@ -381,9 +413,10 @@ Command man_command()
 
 const std::vector<Command>& commands()
 {
-    static const std::vector<Command> all = {
-        render_command(),  compare_command(), diff_command(), tradeoff_command(),   stability_command(),
-        explain_command(), info_command(),    view_command(), completion_command(), man_command()};
+    static const std::vector<Command> all = {render_command(),     merge_command(),    compare_command(),
+                                             diff_command(),       tradeoff_command(), stability_command(),
+                                             explain_command(),    info_command(),     view_command(),
+                                             completion_command(), man_command()};
     return all;
 }
 

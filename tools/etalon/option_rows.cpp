@@ -112,6 +112,29 @@ const Rows& sampling_rows()
     return rows;
 }
 
+const Rows& part_rows()
+{
+    static const Rows rows = {
+        {.name = "resume",
+         .argument = "FILE",
+         .help = "Path tracers: take up the samples that FILE holds, if it is there, and keep all of them in it, to "
+                 "go on later with a larger --spp; the picture has the bits of one run. {name} and #### as in -o",
+         .completes = Completes::file,
+         .heading = "Speed and accuracy"},
+        {.name = "checkpoint",
+         .argument = "S",
+         .help = "With --resume: also write FILE every S seconds, so that no more is ever lost",
+         .standard = "60",
+         .heading = "Speed and accuracy"},
+        {.name = "shard",
+         .argument = "I/N",
+         .help = "Path tracers: part I of N of the picture's rows alone; `etalon merge` makes one picture of all N, "
+                 "with the bits of one run",
+         .heading = "Speed and accuracy"},
+    };
+    return rows;
+}
+
 const Rows& develop_rows()
 {
     static const Rows rows = {

@@ -12,6 +12,7 @@ const Rows& frame_rows();  ///< several pictures of an animation
 const Rows& light_rows();
 const Rows& shading_rows();
 const Rows& sampling_rows();  ///< the knob table and the seed
+const Rows& part_rows();
 const Rows& develop_rows();
 const Rows& device_rows();
 const Rows& load_rows();

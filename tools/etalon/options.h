@@ -56,6 +56,7 @@ inline constexpr std::uint64_t kViewSamples = 4096;  ///< per pixel, where `view
 
 int render(const Arguments& arguments);
 int compare(const Arguments& arguments);
+int merge(const Arguments& arguments);
 int tradeoff(const Arguments& arguments);
 int stability(const Arguments& arguments);
 int diff(const Arguments& arguments);

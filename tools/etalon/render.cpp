@@ -5,8 +5,11 @@
 #include <utility>
 
 #include "engine/base/error.h"
+#include "engine/image/shard.h"
 #include "engine/measure/to_error.h"
+#include "engine/scene/digest.h"
 #include "tools/etalon/arguments.h"
+#include "tools/etalon/checkpoints.h"
 #include "tools/etalon/frames.h"
 #include "tools/etalon/interrupt.h"
 #include "tools/etalon/json.h"
@@ -25,17 +28,18 @@ namespace {
 struct Job {
     std::string scene;
     std::vector<std::vector<std::string>> outputs;  ///< of each frame
+    std::vector<std::string> states;                ///< the file of each frame's state; empty without --resume
 };
 
-std::vector<Job> plan(const Arguments& arguments, const std::vector<Frame>& frames)
+std::vector<Job> plan(const Arguments& arguments, const std::vector<Frame>& frames, const std::optional<Resume>& resume)
 {
     const std::vector<std::string> patterns = arguments.all("output");
     if (patterns.empty())
         throw Error(Blame::input, "render needs to know where to write", "add -o FILE.png, -o FILE.exr or -o -");
     std::vector<Job> jobs;
-    std::set<std::string> taken;
+    std::set<std::string> taken, states;
     for (const std::string& scene : arguments.positional()) {
-        Job job{.scene = scene, .outputs = {}};
+        Job job{.scene = scene, .outputs = {}, .states = {}};
         for (const Frame& frame : frames) {
             std::vector<std::string>& outputs = job.outputs.emplace_back();
             for (const std::string& pattern : patterns) {
@@ -44,6 +48,11 @@ std::vector<Job> plan(const Arguments& arguments, const std::vector<Frame>& fram
                     throw Error(Blame::input, fmt::format("two pictures would be written to {}", outputs.back()),
                                 "put {name} into the output: -o 'out/{name}.png'");
             }
+            if (!resume) continue;
+            job.states.push_back(with_name(with_number(resume->pattern, frame), short_name(scene)));
+            if (!states.insert(job.states.back()).second)
+                throw Error(Blame::input, fmt::format("two pictures would be kept in {}", job.states.back()),
+                            "put {name} into it: --resume '{name}.state'");
         }
         jobs.push_back(std::move(job));
     }
@@ -61,6 +70,7 @@ struct Picture {
     std::string scene;
     Frame frame;
     std::vector<std::string> outputs;
+    std::string state_file;  ///< empty: none
     Film film;
     std::vector<StageTime> stages;  ///< of the rendering
     std::vector<std::string> notes;
@@ -154,8 +164,31 @@ Film draw_to_error(const ErrorGoal& goal, const RenderSettings& settings,
     return std::move(made.film);
 }
 
+Film draw_from_state(const PosedScene& posed, const RenderSettings& settings, const Resume& resume,
+                     Renderers& renderers, Picture& picture, const Progress& progress)
+{
+    StateFile file(picture.state_file, resume.seconds, posed, settings, renderers.device_of(settings.renderer));
+    if (file.begun() > 0)
+        picture.notes.push_back(
+            fmt::format("going on from {} samples a pixel of {}", file.begun(), picture.state_file));
+    Drawn drawn = renderers.draw(picture.scene, posed, settings, progress, file.checkpoints());
+    picture.stages = std::move(drawn.stages);
+    return std::move(drawn.film);
+}
+
+void mark_shard(Film& film, const PosedScene& posed, const Shard& shard)
+{
+    if (shard.whole()) return;
+    etalon::mark_shard(film, {.number = shard.number,
+                              .count = shard.count,
+                              .first_row = shard.first_row(posed.view.height),
+                              .picture_height = posed.view.height,
+                              .scene = digest(posed).text()});
+}
+
 Picture make(const Scene& scene, PoseSettings view, Picture picture, const RenderSettings& settings,
-             const std::optional<ErrorGoal>& goal, Renderers& renderers, const Progress& progress)
+             const std::optional<ErrorGoal>& goal, const std::optional<Resume>& resume, Renderers& renderers,
+             const Progress& progress)
 {
     Stopwatch stopwatch;
     view.time = picture.frame.time;
@@ -167,7 +200,11 @@ Picture make(const Scene& scene, PoseSettings view, Picture picture, const Rende
         picture.stages = std::move(drawn.stages);
         return std::move(drawn.film);
     };
-    picture.film = goal ? draw_to_error(*goal, settings, draw, picture, progress) : draw(settings, progress);
+    if (resume)
+        picture.film = draw_from_state(posed, settings, *resume, renderers, picture, progress);
+    else
+        picture.film = goal ? draw_to_error(*goal, settings, draw, picture, progress) : draw(settings, progress);
+    mark_shard(picture.film, posed, settings.shard);
     picture.seconds.render = stopwatch.lap();
     picture.interrupted = progress.stopped();
     return picture;
@@ -187,6 +224,7 @@ struct Run {
     const PoseSettings view;
     const RenderSettings settings;
     const std::optional<ErrorGoal> goal;
+    const std::optional<Resume> resume;
     const DevelopSettings develop;
     const Terminal terminal;
     const Interrupt interrupt;
@@ -229,7 +267,8 @@ bool render_scene(Run& run, const Job& job)
         ProgressDisplay display(run.arguments);
         Picture picture{.scene = job.scene, .frame = run.frames[i], .outputs = job.outputs[i]};
         picture.seconds.load = std::exchange(load, 0);
-        picture = make(scene, view, std::move(picture), run.settings, run.goal, run.renderers,
+        if (run.resume) picture.state_file = job.states[i];
+        picture = make(scene, view, std::move(picture), run.settings, run.goal, run.resume, run.renderers,
                        display.progress(short_name(job.scene), run.interrupt.flag()));
         display.clear();
         if (i == 0)
@@ -251,12 +290,13 @@ int render(const Arguments& arguments)
             .view = pose_settings(arguments),
             .settings = settings,
             .goal = error_goal(arguments, settings),
+            .resume = resume(arguments, settings),
             .develop = develop_settings(arguments),
             .terminal = Terminal::of_standard_error(),
             .interrupt = {},
             .renderers = Renderers(arguments),
             .results = {}};
-    for (const Job& job : plan(arguments, wanted))
+    for (const Job& job : plan(arguments, wanted, run.resume))
         if (!render_scene(run, job)) break;
     if (arguments.has("json"))
         put(Json::object({{"schema", "etalon-render/1"}, {"pictures", run.results}}).text() + "\n");

@@ -76,7 +76,7 @@ gpu::Device& Renderers::device()
 }
 
 Drawn Renderers::draw(const std::string& scene_name, const PosedScene& posed, const RenderSettings& settings,
-                      const Progress& progress)
+                      const Progress& progress, const Checkpoints& checkpoints)
 {
     const Requirements required = require(posed, settings);
     Film film;
@@ -87,10 +87,10 @@ Drawn Renderers::draw(const std::string& scene_name, const PosedScene& posed, co
                 film = render_raster(device(), posed, required, settings, progress);
                 break;
             case Renderer::path:
-                film = render_path(device(), posed, required, settings, progress);
+                film = render_path(device(), posed, required, settings, progress, checkpoints);
                 break;
             case Renderer::reference:
-                film = reference::render_path(posed, required, settings, progress);
+                film = reference::render_path(posed, required, settings, progress, checkpoints);
                 break;
             case Renderer::reference_raster:
                 film = reference::render_raster(posed, required, settings, progress);

@@ -5,6 +5,7 @@
 #include "engine/base/progress.h"
 #include "engine/gpu/device.h"
 #include "engine/image/film.h"
+#include "engine/image/film_state.h"
 #include "engine/measure/rasters.h"
 #include "engine/measure/report.h"
 #include "engine/scene/pose.h"
@@ -24,10 +25,10 @@ class Renderers {
  public:
     explicit Renderers(const Arguments& arguments);
 
-    /// Film::metadata gets scene, renderer, settings, seed, version and device; times leave it, so
-    /// that the same settings give the same file.
+    /// `checkpoints` are for the path tracers. Film::metadata gets scene, renderer, settings, seed, version and device;
+    /// times leave it, so that the same settings give the same file.
     Drawn draw(const std::string& scene_name, const PosedScene& posed, const RenderSettings& settings,
-               const Progress& progress);
+               const Progress& progress, const Checkpoints& checkpoints = {});
 
     /// "CPU, double precision" for the references, else what Vulkan device it is.
     std::string device_of(Renderer renderer);

@@ -1,0 +1,173 @@
+#include <bit>
+#include <cstring>
+
+#include "engine/base/error.h"
+#include "engine/render/path_state.h"
+
+namespace etalon {
+
+using gpu::Commands;
+using gpu::Work;
+using shared::PathPush;
+
+/// Which pixels the pass at hand has not come to, by the order of generate.comp: columns of strips of 8 rows.
+void PathTracer::State::mark_unreached()
+{
+    unreached.assign(std::size_t{width} * height, false);
+    for (std::size_t b = band; b < bands.size(); ++b) {
+        const PathBand& at = bands[b];
+        const std::uint32_t rows = at.pixel_count / width;
+        const std::uint32_t first = at.first_pixel - first_row * width;
+        for (std::uint32_t k = b == band ? next_slot : 0; k < at.pixel_count; ++k) {
+            const std::uint32_t strip = k / (8 * width);
+            const std::uint32_t within = k - strip * 8 * width;
+            const std::uint32_t tall = std::min(8u, rows - strip * 8);
+            unreached[first + (strip * 8 + within % tall) * width + within / tall] = true;
+        }
+    }
+}
+
+/// Adds the block on the device to `sum`; samples that were not finite to `lost`, paths cut by the depth limit to
+/// `cut`.
+void PathTracer::State::read_block(FilmSum& sum, std::uint64_t& lost, std::uint64_t& cut) const
+{
+    const std::size_t pixels = std::size_t{width} * height;
+    std::vector<float> mean(3 * pixels), m2(3 * pixels), alpha(pixels);
+    for (const PathBand& at : bands) {
+        const std::vector<vec4> means = gpu::read_back<vec4>(*device, at.mean, at.pixel_count);
+        const std::vector<vec4> deviations = gpu::read_back<vec4>(*device, at.m2, at.pixel_count);
+        for (std::size_t i = 0; i < at.pixel_count; ++i) {
+            const std::size_t pixel = at.first_pixel - first_row * width + i;
+            if (!unreached.empty() && unreached[pixel]) continue;
+            const std::uint32_t counts = std::bit_cast<std::uint32_t>(deviations[i].w);
+            const std::uint32_t bad = counts & 0xffffu;
+            lost += bad;
+            cut += counts >> 16;
+            // A pixel that lost samples stands for as many as the others, with the spread of those it has (M13).
+            const double scale = bad < in_block ? double(in_block) / (in_block - bad) : 0;
+            for (std::size_t c = 0; c < 3; ++c) {
+                mean[3 * pixel + c] = means[i][int(c)];
+                m2[3 * pixel + c] = static_cast<float>(deviations[i][int(c)] * scale);
+            }
+            alpha[pixel] = means[i].w;
+        }
+    }
+    sum.add_block(mean, m2, alpha, in_block);
+}
+
+void PathTracer::State::read_aovs(Film& film)
+{
+    const std::size_t pixels = std::size_t{width} * height;
+    Aovs& out = film.aovs;
+    out.depth.resize(pixels);
+    out.normal.resize(pixels);
+    out.albedo.resize(pixels);
+    out.emission.resize(pixels);
+    out.object_id.resize(pixels);
+    out.material_id.resize(pixels);
+    out.uv.resize(pixels);
+    for (PathBand& at : bands) {
+        for (std::uint32_t slot = 0; slot < at.pixel_count; slot += kWaveCapacity) {
+            PathPush push{};
+            push.first_slot = slot;
+            push.slot_count = std::min(kWaveCapacity, at.pixel_count - slot);
+            push.pixel_count = at.pixel_count;
+            push.first_pixel = at.first_pixel;
+            PathPush first = push;
+            first.iteration = 1;
+            const std::uint32_t groups = (push.slot_count + shared::kPathWorkgroup - 1) / shared::kPathWorkgroup;
+            Commands commands(*device, "path AOVs");
+            commands.fill(queues.counters, 0);
+            commands.barrier(Work::copy, Work::copy);
+            commands.fill(queues.counters, push.slot_count, 4 * std::uint64_t{shared::kCountPaths}, 4);
+            launch(commands, at, kernels.generate_centres, first, groups);
+            commands.barrier(Work::all, Work::compute);
+            trace(commands, at, kernels.trace_centres, kernels.retry_centres, push, shared::kDispatchRetryPaths,
+                  std::nullopt);
+            commands.barrier(Work::compute, Work::compute);
+            launch(commands, at, kernels.aovs, push, groups);
+            finish(commands);
+        }
+        const std::vector<vec4> values = gpu::read_back<vec4>(*device, aovs, 4 * std::size_t{at.pixel_count});
+        for (std::size_t i = 0; i < at.pixel_count; ++i) {
+            const std::size_t pixel = at.first_pixel - first_row * width + i;
+            const vec4* v = &values[4 * i];
+            out.normal[pixel] = vec3(v[0]);
+            out.depth[pixel] = v[0].w;
+            out.albedo[pixel] = vec3(v[1]);
+            out.object_id[pixel] = std::bit_cast<std::uint32_t>(v[1].w);
+            out.emission[pixel] = vec3(v[2]);
+            out.material_id[pixel] = std::bit_cast<std::uint32_t>(v[2].w);
+            out.uv[pixel] = vec2(v[3]);
+        }
+    }
+}
+
+/// Of all completed passes: the blocks summed up, and the block at hand as the device has it.
+FilmState PathTracer::State::save() const
+{
+    FilmState out{.of = {},
+                  .width = static_cast<int>(width),
+                  .height = static_cast<int>(height),
+                  .samples = first_of_block + in_block,
+                  .nonfinite = total.nonfinite,
+                  .truncated = total.truncated,
+                  .sums = total.sum.state(),
+                  .block_samples = in_block,
+                  .block = {}};
+    if (in_block == 0) return out;
+    for (const PathBand& at : bands)
+        for (const gpu::Buffer* values : {&at.mean, &at.m2}) {
+            const std::vector<float> floats = gpu::read_back<float>(*device, *values, 4 * std::size_t{at.pixel_count});
+            out.block.insert(out.block.end(), floats.begin(), floats.end());
+        }
+    return out;
+}
+
+void PathTracer::State::restore(const FilmState& state)
+{
+    const std::size_t pixels = std::size_t{width} * height;
+    if (state.width != int(width) || state.height != int(height) || state.block_samples > state.samples ||
+        state.block_samples > kBlockSamples || state.block.size() != (state.block_samples > 0 ? 8 * pixels : 0))
+        throw Error(Blame::input, "this picture cannot go on from the state of another one");
+    total.sum.restore(state.sums, state.samples - state.block_samples);
+    total.nonfinite = state.nonfinite;
+    total.truncated = state.truncated;
+    first_of_block = state.samples - state.block_samples;
+    in_block = state.block_samples;
+    std::span<const float> rest(state.block);
+    for (const PathBand& at : bands)
+        for (const gpu::Buffer* values : {&at.mean, &at.m2}) {
+            if (rest.empty()) return;
+            gpu::upload(*device, *values, rest.first(4 * std::size_t{at.pixel_count}));
+            rest = rest.subspan(4 * std::size_t{at.pixel_count});
+        }
+}
+
+Film PathTracer::film()
+{
+    State& s = *state_;
+    PathSamples all = s.total;
+    if (s.in_block > 0) s.read_block(all.sum, all.nonfinite, all.truncated);
+    Film film = all.sum.film();
+    film.nonfinite = all.nonfinite;
+    film.truncated = all.truncated;
+    if (s.wants_aovs) s.read_aovs(film);
+    if (!s.unreached.empty())
+        film.metadata["pixels.unreached"] = std::to_string(std::count(s.unreached.begin(), s.unreached.end(), true));
+    return film;
+}
+
+FilmState PathTracer::state() const
+{
+    return state_->save();
+}
+
+void PathTracer::resume(const FilmState& state)
+{
+    State& s = *state_;
+    resume({.sum = {int(s.width), int(s.height)}});
+    s.restore(state);
+}
+
+}  // namespace etalon

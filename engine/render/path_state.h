@@ -1,0 +1,76 @@
+#pragma once
+// Private to engine/render: what a PathTracer consists of. path.cpp makes samples, path_film.cpp reads them.
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include "engine/render/path.h"
+#include "engine/render/path_kernels.h"
+
+namespace etalon {
+
+/// Paths in flight at once: more hide the cost of a dispatch (some 20 µs on software devices), fewer stay in its
+/// caches.
+inline constexpr std::uint32_t kWaveCapacity = 1u << 17;
+/// Of a picture's first wave, before the scene's speed is known: a stop must not wait for long even where it is slow.
+inline constexpr std::uint32_t kFirstWave = 1u << 14;
+/// Samples a pixel that are summed in float before they are merged in double (M1); counts of a block fit 16 bits.
+inline constexpr std::uint32_t kBlockSamples = 256;
+
+struct PathTracer::State {
+    gpu::Device* device;
+    bool wants_aovs;
+    Shard shard;
+    PathScene scene;
+    PathKernels kernels;
+    PathQueues queues;
+    gpu::Buffer frame;
+    gpu::Buffer aovs;
+    std::vector<PathBand> bands;
+    std::uint32_t width = 0, height = 0;  ///< pixels of the film
+    std::uint32_t first_row = 0;          ///< of the film in the picture
+    std::uint32_t wave = kFirstWave;      ///< paths of the next wave, adapted to the scene's speed
+
+    PathSamples total{.sum = {1, 1}};  ///< of completed blocks
+    std::uint64_t first_of_block = 0;  ///< sample number
+    std::uint32_t in_block = 0;        ///< samples of completed passes of this block
+
+    std::uint32_t in_pass = 0;  ///< samples a pixel of the pass at hand; 0: none
+    std::size_t band = 0;       ///< where the pass at hand stands
+    std::uint32_t next_slot = 0;
+    std::uint64_t slots_done = 0;
+
+    std::vector<bool> unreached;  ///< pixels without samples, after a stop in the first pass; else empty
+
+    bool timing = false;
+    std::vector<KernelTime> times;
+
+    State(gpu::Device& device, const PosedScene& posed, const Requirements& required, const RenderSettings& settings,
+          const Progress& progress, Traversal traversal);
+    void resize(const View& view);
+    void begin_pass(std::uint64_t most_samples);
+    void run_wave(PathBand& at, std::uint32_t count);
+    void end_pass();
+    void mark_unreached();
+    void trace_from_camera(gpu::Commands& commands, PathBand& at, const shared::PathPush& push);
+    void bounce(gpu::Commands& commands, PathBand& at, shared::PathPush push);
+    void launch(gpu::Commands& commands, PathBand& at, const gpu::ComputePipeline& kernel, const shared::PathPush& push,
+                std::uint32_t groups);
+    void launch_indirect(gpu::Commands& commands, PathBand& at, const gpu::ComputePipeline& kernel,
+                         const shared::PathPush& push, std::uint32_t row);
+    void trace(gpu::Commands& commands, PathBand& at, const gpu::ComputePipeline& kernel,
+               const gpu::ComputePipeline& retry, const shared::PathPush& push, std::uint32_t retry_row,
+               std::optional<std::uint32_t> row);
+    void finish(gpu::Commands& commands);
+    void read_block(FilmSum& sum, std::uint64_t& lost, std::uint64_t& cut) const;
+    void read_aovs(Film& film);
+    FilmState save() const;
+    void restore(const FilmState& state);
+    std::uint32_t trace_groups(std::uint32_t rays) const
+    {
+        const std::uint32_t each = shared::kPathWorkgroup * kernels.rays_per_lane;
+        return (rays + each - 1) / each;
+    }
+};
+
+}  // namespace etalon
