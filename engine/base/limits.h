@@ -22,13 +22,16 @@ struct Limits {
     std::uint64_t json_values;
     std::uint64_t zero_filled_bytes;  ///< accessors without a bufferView, together
     std::uint64_t compressed_ratio;   ///< bytes that a Draco payload fills, for each of its own
+    std::uint64_t decoded_bytes;      ///< that come out of compression extensions
     std::uint64_t vertex_bytes;       ///< attributes and indices of all primitives once imported
     std::uint64_t node_depth;
     std::uint64_t instances;      ///< of EXT_mesh_gpu_instancing, in the file
     std::uint64_t draws;          ///< primitives times their nodes and instances
+    std::uint64_t posed_bytes;    ///< attributes and indices that skins and morph targets make at one instant
     std::uint64_t morph_targets;  ///< of one primitive
     std::uint64_t joints;         ///< of one skin
     std::uint64_t keyframes;      ///< of all animations
+    std::uint64_t key_numbers;    ///< times and values of all keyframes once imported
     std::uint64_t image_side;     ///< pixels
     std::uint64_t image_pixels;
     std::uint64_t image_channels;

@@ -10,8 +10,6 @@ namespace etalon::gltf {
 
 namespace {
 
-constexpr std::size_t kMaxBytes = std::size_t{8} << 30;
-
 std::size_t whole(const Value& object, const char* key, std::size_t standard)
 {
     const Value* found = member(object, key);
@@ -26,7 +24,8 @@ std::string text(const Value& object, const char* key)
 
 class Decoder {
  public:
-    Decoder(const Model& model, const CheckedGltf& file) : model_(model), file_(file)
+    Decoder(const Model& model, const CheckedGltf& file, const Limits& limits)
+        : model_(model), file_(file), most_(limits.decoded_bytes)
     {
         for (std::size_t i = 0; i < model_.bufferViews.size(); ++i)
             for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"})
@@ -55,8 +54,11 @@ class Decoder {
 
     void take(std::size_t bytes)
     {
-        bytes_ += bytes;
-        if (bytes_ > kMaxBytes) throw Error(Blame::input, "what is compressed takes more than 8 GiB", "split the file");
+        if (__builtin_add_overflow(bytes_, bytes, &bytes_) || bytes_ > most_)
+            throw Error(
+                Blame::input,
+                fmt::format("what is compressed takes {} bytes and more once decoded; the limit is {}", bytes_, most_),
+                "split the file, or lift the limits with --limits none");
     }
 
     std::span<const std::byte> bytes_of(std::size_t buffer, std::size_t offset, std::size_t length) const
@@ -142,14 +144,15 @@ class Decoder {
     const Model& model_;
     const CheckedGltf& file_;
     Decoded out_;
-    std::size_t bytes_ = 0;
+    std::uint64_t most_;
+    std::uint64_t bytes_ = 0;
 };
 
 }  // namespace
 
-Decoded decode_compressed(const Model& model, const CheckedGltf& file)
+Decoded decode_compressed(const Model& model, const CheckedGltf& file, const Limits& limits)
 {
-    return Decoder(model, file).result();
+    return Decoder(model, file, limits).result();
 }
 
 }  // namespace etalon::gltf

@@ -18,8 +18,8 @@ struct Decoded {
 
 /// Decodes every bufferView of EXT_ or KHR_meshopt_compression and every primitive of KHR_draco_mesh_compression that
 /// preflight has passed. Throws Error(input) with a JSON pointer: damaged payloads, meshopt's codec version 1 and
-/// colour filter, over 8 GiB in all, a Draco mesh that is not what its accessors say.
-Decoded decode_compressed(const Model& model, const CheckedGltf& file);
+/// colour filter, over limits.decoded_bytes in all, a Draco mesh that is not what its accessors say.
+Decoded decode_compressed(const Model& model, const CheckedGltf& file, const Limits& limits);
 
 }  // namespace etalon::gltf
 

@@ -58,14 +58,14 @@ double bytes_of(const Primitive& p)
 
 std::uint64_t Footprint::total() const
 {
-    return program + scene + picture;
+    return program + geometry + textures + picture;
 }
 
 Footprint predict(ivec2 size, const RenderSettings& settings)
 {
     const Costs& cost = costs(settings.renderer);
     const double each = cost.pixel + cost.sample * settings.msaa + (settings.aovs ? kAovs : 0);
-    return {.program = whole(cost.program), .scene = 0, .picture = whole(each * double(size.x) * double(size.y))};
+    return {.program = whole(cost.program), .picture = whole(each * double(size.x) * double(size.y))};
 }
 
 Footprint predict(const PosedScene& posed, const RenderSettings& settings)
@@ -77,21 +77,29 @@ Footprint predict(const PosedScene& posed, const RenderSettings& settings)
     for (const Primitive& primitive : posed.deformed) bytes += cost.geometry * bytes_of(primitive);
     for (const Draw& draw : posed.draws)
         bytes += cost.drawn_triangle * double(posed.primitive(draw).indices.size()) / 3;
+    double texels = 0;
     for (const Texels& image : posed.scene->images)
-        bytes += cost.texel * (image.is_8_bit ? 1 : 4) * double(image.width) * double(image.height);
+        texels += cost.texel * (image.is_8_bit ? 1 : 4) * double(image.width) * double(image.height);
     Footprint footprint = predict(ivec2(posed.view.width, posed.view.height), settings);
-    footprint.scene = whole(bytes);
+    footprint.geometry = whole(bytes);
+    footprint.textures = whole(texels);
     return footprint;
+}
+
+std::string describe(const Footprint& footprint)
+{
+    return fmt::format("program {}, geometry {}, textures {}, picture {}", describe_bytes(footprint.program),
+                       describe_bytes(footprint.geometry), describe_bytes(footprint.textures),
+                       describe_bytes(footprint.picture));
 }
 
 void check_memory(const Footprint& footprint, std::uint64_t memory)
 {
     if (footprint.total() <= memory) return;
     throw Error(Blame::machine,
-                fmt::format("this needs about {} of memory (program {}, scene {}, picture {}); it may have {}",
-                            describe_bytes(footprint.total()), describe_bytes(footprint.program),
-                            describe_bytes(footprint.scene), describe_bytes(footprint.picture), describe_bytes(memory)),
-                "a smaller --size or scene needs less; --memory N allows more where there is more");
+                fmt::format("this needs about {} of memory ({}); it may have {}", describe_bytes(footprint.total()),
+                            describe(footprint), describe_bytes(memory)),
+                "--degrade takes smaller textures or a smaller picture; --memory N allows more where there is more");
 }
 
 std::string describe_bytes(std::uint64_t bytes)

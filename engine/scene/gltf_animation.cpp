@@ -12,9 +12,6 @@ namespace etalon::gltf {
 
 namespace {
 
-// Many samplers may share one accessor, and each gets its own copy.
-constexpr std::size_t kMaxNumbers = 400'000'000;
-
 class Animations {
  public:
     Animations(const Source& source, Scene& scene) : source_(source), scene_(scene), reader_(source)
@@ -155,8 +152,10 @@ class Animations {
                         fmt::format("\"{}\" [VALUE_NOT_IN_LIST]", in.interpolation.substr(0, 60)),
                         "LINEAR, STEP or CUBICSPLINE");
         numbers_ += reader_.count(in.input) + 4 * reader_.count(in.output);
-        if (numbers_ > kMaxNumbers)
-            throw fault(pointer, fmt::format("the keys of all animations are over {} numbers", kMaxNumbers));
+        if (numbers_ > source_.limits.key_numbers)
+            throw fault(pointer,
+                        fmt::format("the keyframes of all animations take over {} numbers", source_.limits.key_numbers),
+                        "split the file, or lift the limits with --limits none");
         out.times = reader_.doubles(in.input, {1}, pointer + "/input").values;
         const auto falls = std::is_sorted_until(out.times.begin(), out.times.end());
         if (falls != out.times.end())

@@ -11,8 +11,6 @@ namespace etalon::gltf {
 
 namespace {
 
-constexpr std::size_t kMaxInstances = 10'000'000;
-
 // Sets parent_from_node and what it is made of.
 void read_transform(const tinygltf::Node& in, const std::string& pointer, Node& node)
 {
@@ -113,7 +111,6 @@ std::vector<dmat4> instances_of(const Value& extension, AccessorReader& reader, 
         if (index == nullptr) return {};
         const std::string at = fmt::format("{}/attributes/{}", pointer, name);
         const std::size_t own = reader.count(index->GetNumberAsInt());
-        if (own > kMaxInstances) throw fault(at, fmt::format("{} instances; the limit is {}", own, kMaxInstances));
         if (count != 0 && own != count)
             throw fault(at, fmt::format("{} elements, but another attribute has {}", own, count));
         count = own;

@@ -9,9 +9,6 @@ namespace etalon::gltf {
 
 namespace {
 
-// JOINTS_n is of at most 16 bits: more cannot be named.
-constexpr std::size_t kMaxJoints = 65'536;
-
 std::vector<dmat4> inverse_bind_of(const tinygltf::Skin& in, const AccessorReader& reader, const std::string& pointer)
 {
     std::vector<dmat4> out(in.joints.size(), dmat4(1));
@@ -46,8 +43,6 @@ void import_skins(const Source& source, Scene& scene)
     for (std::size_t i = 0; i < source.model.skins.size(); ++i) {
         const tinygltf::Skin& in = source.model.skins[i];
         const std::string pointer = fmt::format("/skins/{}", i);
-        if (in.joints.size() > kMaxJoints)
-            throw fault(pointer + "/joints", fmt::format("{} joints; the limit is {}", in.joints.size(), kMaxJoints));
         Skin out;
         out.name = in.name;
         for (const int joint : in.joints) out.joints.push_back(static_cast<Index>(joint));

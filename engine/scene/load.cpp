@@ -52,7 +52,7 @@ Scene parse_gltf(std::span<const std::byte> bytes, const std::filesystem::path& 
     scene.name = name;
     gltf::list_variants(model, scene);
     gltf::list_metadata(model, scene);
-    const gltf::Decoded decoded = gltf::decode_compressed(model, checked);
+    const gltf::Decoded decoded = gltf::decode_compressed(model, checked, options.limits);
     const gltf::Source source{
         model, checked, decoded, folder, options.variant ? variant_of(scene, *options.variant) : kNone, options.limits};
     scene.warnings = checked.warnings;

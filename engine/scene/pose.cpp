@@ -18,12 +18,8 @@ namespace etalon {
 
 namespace {
 
-// Draws after instancing. What a flattened list may cost: 10^7 · 144 bytes.
-constexpr std::size_t kMaxDraws = 10'000'000;
 // Up to here bounds come from every vertex, beyond from the boxes of the primitives.
 constexpr std::size_t kExactVertices = std::size_t{1} << 24;
-// Vertices shaped by skins and morph targets: each node may have its own.
-constexpr std::size_t kMaxDeformedBytes = std::size_t{8} << 30;
 
 std::string node_label(const Scene& scene, Index index)
 {
@@ -41,8 +37,8 @@ struct Deformation {
 // The walk over the forest below one root. Depth-first in node order, without recursion: files may be 10^6 deep.
 class Walk {
  public:
-    Walk(const Scene& scene, const Motion& motion, const SceneRoot& root, PosedScene& out)
-        : scene_(scene), motion_(motion), out_(out), seen_(scene.nodes.size())
+    Walk(const Scene& scene, const Motion& motion, const SceneRoot& root, std::uint64_t most_draws, PosedScene& out)
+        : scene_(scene), motion_(motion), most_draws_(most_draws), out_(out), seen_(scene.nodes.size())
     {
         for (auto it = root.nodes.rbegin(); it != root.nodes.rend(); ++it) stack_.push_back({*it, true, dmat4(1)});
         while (!stack_.empty()) {
@@ -95,10 +91,10 @@ class Walk {
         assume(node.mesh < scene_.meshes.size());
         const auto& primitives = scene_.meshes[node.mesh].primitives;
         const std::size_t copies = std::max<std::size_t>(node.instances.size(), 1);
-        if (primitives.size() * copies > kMaxDraws - std::min(out_.draws.size(), kMaxDraws))
+        if (primitives.size() * copies > most_draws_ - std::min<std::uint64_t>(out_.draws.size(), most_draws_))
             throw Error(Blame::input,
                         fmt::format("{} asks for {} draws; the limit is {}", node_label(scene_, index),
-                                    primitives.size() * copies, kMaxDraws),
+                                    primitives.size() * copies, most_draws_),
                         "use fewer instances");
         if (std::any_of(primitives.begin(), primitives.end(), [](const Primitive& p) { return p.is_deformable(); }))
             deformations.push_back({index, out_.draws.size(), world});
@@ -139,6 +135,7 @@ class Walk {
 
     const Scene& scene_;
     const Motion& motion_;
+    std::uint64_t most_draws_;
     PosedScene& out_;
     std::vector<bool> seen_;
     std::vector<Pending> stack_;
@@ -147,7 +144,9 @@ class Walk {
 // Shapes the primitives of nodes with skins and morph targets.
 class Deformer {
  public:
-    Deformer(const Scene& scene, const Motion& motion, PosedScene& out) : scene_(scene), motion_(motion), out_(out) {}
+    Deformer(const Scene& scene, const Motion& motion, std::uint64_t most_bytes, PosedScene& out)
+        : scene_(scene), motion_(motion), most_bytes_(most_bytes), out_(out)
+    {}
 
     void deform(const Deformation& at)
     {
@@ -197,9 +196,12 @@ class Deformer {
     {
         Made made{.index = static_cast<Index>(out_.deformed.size())};
         bytes_ += base.positions.size() * (2 * sizeof(vec3) + 3 * sizeof(vec4)) + base.indices.size() * sizeof(Index);
-        if (bytes_ > kMaxDeformedBytes)
-            throw Error(Blame::input, "the skins and morph targets of the scene make more than 8 GiB of vertices",
-                        "show fewer nodes with them");
+        if (bytes_ > most_bytes_)
+            throw Error(Blame::input,
+                        fmt::format("the skins and morph targets of the scene make {} bytes of vertices and more; the "
+                                    "limit is {}",
+                                    bytes_, most_bytes_),
+                        "show fewer nodes with them, or lift the limits with --limits none");
         Primitive shaped = is_morphed ? morphed(base, weights) : base;
         if (skin != nullptr) {
             Skinned placed =
@@ -222,11 +224,12 @@ class Deformer {
 
     const Scene& scene_;
     const Motion& motion_;
+    std::uint64_t most_bytes_;
     PosedScene& out_;
     std::map<Key, Made> made_;
     std::vector<dmat4> world_from_node_;
     std::map<Index, std::vector<dmat4>> joints_;
-    std::size_t bytes_ = 0;
+    std::uint64_t bytes_ = 0;
 };
 
 Motion motion_of(const Scene& scene, const PoseSettings& settings, std::vector<std::string>& notes)
@@ -338,8 +341,8 @@ PosedScene pose(const Scene& scene, const PoseSettings& settings)
         posed.moved_materials = scene.materials;
         for (const auto& [index, material] : motion.materials) posed.moved_materials.at(index) = material;
     }
-    const Walk walk(scene, motion, root, posed);
-    Deformer deformer(scene, motion, posed);
+    const Walk walk(scene, motion, root, settings.limits.draws, posed);
+    Deformer deformer(scene, motion, settings.limits.posed_bytes, posed);
     for (const Deformation& deformation : walk.deformations) deformer.deform(deformation);
     Subject subject = measure_bounds(posed);
     if (settings.framed) subject = around(*settings.framed);

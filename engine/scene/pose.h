@@ -5,6 +5,7 @@
 #include <variant>
 #include <vector>
 
+#include "engine/base/limits.h"
 #include "engine/scene/scene.h"
 
 namespace etalon {
@@ -105,6 +106,7 @@ struct PoseSettings {
     std::optional<std::string> animation;  ///< name, index or kEveryAnimation; the first when absent. Alone: at time 0
     std::optional<std::pair<dvec3, dvec3>> framed;  ///< world box that a framed or orbiting view shows; that of this
                                                     ///< instant when absent
+    Limits limits{};                                ///< draws and posed_bytes are of this step
 };
 
 /// Poses nodes, skins and morph targets at the settings' time, flattens the node forest, picks or frames the camera,
