@@ -59,6 +59,7 @@ namespace etalon::gl {
     F(Enablei, ENABLEI)                                                                         \
     F(FenceSync, FENCESYNC)                                                                     \
     F(Finish, FINISH)                                                                           \
+    F(Flush, FLUSH)                                                                             \
     F(FrontFace, FRONTFACE)                                                                     \
     F(GetError, GETERROR)                                                                       \
     F(GetFloatv, GETFLOATV)                                                                     \
@@ -87,6 +88,7 @@ namespace etalon::gl {
     F(NamedFramebufferTexture, NAMEDFRAMEBUFFERTEXTURE)                                         \
     F(PixelStorei, PIXELSTOREI)                                                                 \
     F(PolygonMode, POLYGONMODE)                                                                 \
+    F(ProvokingVertex, PROVOKINGVERTEX)                                                         \
     F(QueryCounter, QUERYCOUNTER)                                                               \
     F(SamplerParameterf, SAMPLERPARAMETERF)                                                     \
     F(SamplerParameteri, SAMPLERPARAMETERI)                                                     \

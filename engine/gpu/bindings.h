@@ -49,12 +49,15 @@ class Bindings {
     Bindings(Device& device, const Layout& layout, const std::vector<Bind>& binds, std::uint32_t set = 0);
 
     VkDescriptorSet handle() const { return set_; }
+    /// By OpenGL; null by Vulkan.
+    const GlBindings* gl() const { return gl_.get(); }
     std::uint32_t index() const { return index_; }
 
  private:
     Owned<VkDescriptorPool, destroy_descriptor_pool> pool_;  // of exactly this set
     VkDescriptorSet set_ = VK_NULL_HANDLE;
     std::uint32_t index_ = 0;
+    GlOwned<GlBindings> gl_;
 };
 
 }  // namespace etalon::gpu

@@ -7,6 +7,7 @@
 #include "engine/base/error.h"
 #include "engine/gpu/commands.h"
 #include "engine/gpu/device_state.h"
+#include "engine/gpu/gl_resources.h"
 
 namespace etalon::gpu {
 namespace {
@@ -35,12 +36,17 @@ void destroy_buffer_view(const DeviceState& state, VkBufferView view)
 
 Buffer::Buffer(Device& device, const BufferSpec& spec) : size_(std::max(spec.size, kSmallest))
 {
-    const DeviceState& state = device.state();
-    if (size_ > state.limits.buffer_size)
+    if (size_ > device.limits().buffer_size)
         throw Error(Blame::machine,
                     fmt::format("buffer \"{}\" needs {} bytes; this device allows {}", spec.name, size_,
-                                state.limits.buffer_size),
+                                device.limits().buffer_size),
                     "use a smaller picture or scene");
+    if (GlDevice* gl = device.gl()) {
+        gl_.reset(new GlBuffer(*gl, spec, size_));
+        mapped_ = gl_->host();
+        return;
+    }
+    const DeviceState& state = device.state();
     const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = size_, .usage = kEveryUse};
     VkBuffer buffer = VK_NULL_HANDLE;
     check(state.vk.vkCreateBuffer(state.device, &info, state.instance.allocator, &buffer), "vkCreateBuffer");
@@ -57,6 +63,8 @@ Buffer::Buffer(Device& device, const BufferSpec& spec) : size_(std::max(spec.siz
 
 TexelView::TexelView(Device& device, const Buffer& buffer, VkFormat format, std::uint64_t offset, std::uint64_t size)
 {
+    if (device.gl() != nullptr)
+        throw Error(Blame::machine, "texel views have no place in the OpenGL backend", "render with --backend vulkan");
     const DeviceState& state = device.state();
     assume(offset <= buffer.size() && offset % kOffsetAlignment == 0);
     const std::uint64_t texel = texel_size(format);
@@ -84,6 +92,7 @@ void upload(Device& device, const Buffer& buffer, std::span<const std::byte> byt
         std::memcpy(mapped.data() + offset, bytes.data(), bytes.size());
         return;
     }
+    if (buffer.gl() != nullptr) return buffer.gl()->write(bytes, offset);
     const std::uint64_t step = std::min<std::uint64_t>(kStagingSize, bytes.size());
     const Buffer staging(device, {.size = step, .memory = MemoryKind::upload, .name = "staging"});
     for (std::uint64_t done = 0; done < bytes.size(); done += step) {
@@ -101,6 +110,7 @@ void download(Device& device, const Buffer& buffer, std::span<std::byte> bytes, 
         std::memcpy(bytes.data(), mapped.data() + offset, bytes.size());
         return;
     }
+    if (buffer.gl() != nullptr) return buffer.gl()->read(bytes, offset);
     const std::uint64_t step = std::min<std::uint64_t>(kStagingSize, bytes.size());
     const Buffer staging(device, {.size = step, .memory = MemoryKind::readback, .name = "staging"});
     for (std::uint64_t done = 0; done < bytes.size(); done += step) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/gpu/device.h"
+#include "engine/gpu/gl_owned.h"
 #include "engine/gpu/memory.h"
 #include "engine/gpu/owned.h"
 
@@ -37,7 +38,9 @@ class Buffer {
     VkDeviceAddress address() const { return address_; }
     /// Its memory as the host sees it; empty unless host-visible (upload, readback, or Device::unified_memory).
     std::span<std::byte> mapped() const { return mapped_; }
-    explicit operator bool() const { return static_cast<bool>(buffer_); }
+    explicit operator bool() const { return buffer_ || gl_; }
+    /// By OpenGL; null by Vulkan.
+    GlBuffer* gl() const { return gl_.get(); }
 
  private:
     Allocation memory_;
@@ -45,6 +48,7 @@ class Buffer {
     std::uint64_t size_ = 0;
     VkDeviceAddress address_ = 0;
     std::span<std::byte> mapped_;
+    GlOwned<GlBuffer> gl_;
 };
 
 /// A buffer read as texels of `format`: in GLSL `imageBuffer` and `imageLoad`, or `samplerBuffer` and `texelFetch`. The

@@ -6,6 +6,7 @@
 
 #include "engine/base/error.h"
 #include "engine/gpu/device_state.h"
+#include "engine/gpu/gl_device.h"
 
 namespace etalon::gpu {
 namespace {
@@ -176,6 +177,7 @@ std::vector<Candidate> choose(const Instance& instance, const DeviceOptions& opt
 
 std::vector<DeviceReport> list_devices(const DeviceOptions& options)
 {
+    if (options.backend == Backend::opengl) return list_gl_devices(options);
     const Instance instance(options);
     std::vector<DeviceReport> reports;
     for (Candidate& candidate : choose(instance, options)) reports.push_back(std::move(candidate.report));

@@ -6,6 +6,7 @@
 
 #include "engine/base/error.h"
 #include "engine/gpu/device_state.h"
+#include "engine/gpu/gl_commands.h"
 
 namespace etalon::gpu {
 namespace {
@@ -117,8 +118,13 @@ void destroy_query_pool(const DeviceState& state, VkQueryPool pool)
     state.vk.vkDestroyQueryPool(state.device, pool, state.instance.allocator);
 }
 
-Commands::Commands(Device& device, std::string name) : state_(&device.state()), name_(std::move(name))
+Commands::Commands(Device& device, std::string name) : name_(std::move(name))
 {
+    if (GlDevice* gl = device.gl()) {
+        gl_.reset(new GlCommands(*gl));
+        return;
+    }
+    state_ = &device.state();
     const VkCommandPoolCreateInfo pool_info{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                             .queueFamilyIndex = state_->queue_family};
     VkCommandPool pool = VK_NULL_HANDLE;
@@ -139,6 +145,7 @@ Commands::Commands(Device& device, std::string name) : state_(&device.state()), 
 
 Commands::Commands(Commands&& other) noexcept
     : state_(std::exchange(other.state_, nullptr)),
+      gl_(std::move(other.gl_)),
       pool_(std::move(other.pool_)),
       queries_(std::move(other.queries_)),
       buffer_(other.buffer_),
@@ -174,8 +181,9 @@ void Commands::bind(VkPipelineBindPoint point, VkPipeline pipeline, const Layout
 
 void Commands::bind(const ComputePipeline& pipeline)
 {
-    bind(VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.handle(), pipeline.layout());
     workgroup_x_ = pipeline.workgroup(0);
+    if (gl_) return gl_->bind(*pipeline.gl());
+    bind(VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.handle(), pipeline.layout());
 }
 
 void Commands::bind(const ComputePipeline& pipeline, const Bindings& bindings)
@@ -186,12 +194,16 @@ void Commands::bind(const ComputePipeline& pipeline, const Bindings& bindings)
 
 void Commands::bind(const GraphicsPipeline& pipeline)
 {
-    bind(VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline.handle(), pipeline.layout());
+    if (gl_)
+        gl_->bind(*pipeline.gl());
+    else
+        bind(VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline.handle(), pipeline.layout());
     set_cull(pipeline.cull(), pipeline.front());
 }
 
 void Commands::bind(const Bindings& bindings)
 {
+    if (gl_) return gl_->bind(*bindings.gl(), bindings.index());
     assume(layout_ != nullptr && bindings.handle() != VK_NULL_HANDLE);
     const VkDescriptorSet set = bindings.handle();
     state_->vk.vkCmdBindDescriptorSets(buffer_, point_, layout_->handle(), bindings.index(), 1, &set, 0, nullptr);
@@ -199,6 +211,7 @@ void Commands::bind(const Bindings& bindings)
 
 void Commands::push_bytes(std::span<const std::byte> bytes)
 {
+    if (gl_) return gl_->push(bytes);
     assume(layout_ != nullptr && bytes.size() == layout_->push_constants());
     state_->vk.vkCmdPushConstants(buffer_, layout_->handle(), layout_->push_stages(), 0,
                                   static_cast<std::uint32_t>(bytes.size()), bytes.data());
@@ -206,6 +219,7 @@ void Commands::push_bytes(std::span<const std::byte> bytes)
 
 void Commands::dispatch(std::uint32_t x, std::uint32_t y, std::uint32_t z)
 {
+    if (gl_) return gl_->dispatch(x, y, z);
     const std::uint32_t counts[] = {x, y, z};
     for (int axis = 0; axis < 3; ++axis) assume(counts[axis] <= state_->limits.workgroup_count[axis]);
     state_->vk.vkCmdDispatch(buffer_, x, y, z);
@@ -218,17 +232,24 @@ void Commands::dispatch_over(std::uint32_t invocations)
 
 void Commands::dispatch_indirect(const Buffer& counts, std::uint64_t offset)
 {
+    if (gl_) return gl_->dispatch_indirect(*counts.gl(), offset);
     state_->vk.vkCmdDispatchIndirect(buffer_, counts.handle(), offset);
 }
 
 void Commands::barrier(Work before, Work after)
 {
+    if (gl_) return gl_->barrier();
     memory_barrier(*state_, buffer_, scope(before), scope(after));
 }
 
 void Commands::prepare(Image& image, ImageUse use, bool discard)
 {
     assume(use != ImageUse::undefined);
+    if (gl_) {
+        // OpenGL keeps its own order but for what shaders write.
+        if (image.use() == ImageUse::storage) gl_->barrier();
+        return image.set_use(use);
+    }
     const ImageScope before = scope(image.use());
     const ImageScope after = scope(use);
     image.set_use(use);
@@ -252,6 +273,7 @@ void Commands::prepare(Image& image, ImageUse use, bool discard)
 
 void Commands::fill(const Buffer& buffer, std::uint32_t word, std::uint64_t offset, std::uint64_t size)
 {
+    if (gl_) return gl_->fill(*buffer.gl(), word, offset, size == VK_WHOLE_SIZE ? buffer.size() - offset : size);
     state_->vk.vkCmdFillBuffer(buffer_, buffer.handle(), offset, size, word);
 }
 
@@ -259,12 +281,14 @@ void Commands::copy(const Buffer& from, const Buffer& to, std::uint64_t size, st
                     std::uint64_t to_offset)
 {
     assume(from_offset + size <= from.size() && to_offset + size <= to.size());
+    if (gl_) return gl_->copy(*from.gl(), *to.gl(), size, from_offset, to_offset);
     const VkBufferCopy region{from_offset, to_offset, size};
     state_->vk.vkCmdCopyBuffer(buffer_, from.handle(), to.handle(), 1, &region);
 }
 
 void Commands::copy(const Buffer& from, const Image& to, std::uint32_t mip, std::uint32_t layer, std::uint64_t offset)
 {
+    if (gl_) return gl_->copy(*from.gl(), to, mip, layer, offset);
     const VkBufferImageCopy region = copy_region(to, mip, layer, offset);
     state_->vk.vkCmdCopyBufferToImage(buffer_, from.handle(), to.handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
                                       &region);
@@ -272,6 +296,7 @@ void Commands::copy(const Buffer& from, const Image& to, std::uint32_t mip, std:
 
 void Commands::copy(const Image& from, const Buffer& to, std::uint32_t mip, std::uint32_t layer, std::uint64_t offset)
 {
+    if (gl_) return gl_->copy(from, *to.gl(), mip, layer, offset);
     const VkBufferImageCopy region = copy_region(from, mip, layer, offset);
     state_->vk.vkCmdCopyImageToBuffer(buffer_, from.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to.handle(), 1,
                                       &region);
@@ -279,6 +304,7 @@ void Commands::copy(const Image& from, const Buffer& to, std::uint32_t mip, std:
 
 void Commands::blit(const Image& from, const Image& to, VkFilter filter)
 {
+    if (gl_) return gl_->blit(from, to, filter);
     const auto corner = [](const Image& image) {
         return VkOffset3D{static_cast<std::int32_t>(image.width()), static_cast<std::int32_t>(image.height()), 1};
     };
@@ -292,6 +318,7 @@ void Commands::blit(const Image& from, const Image& to, VkFilter filter)
 
 void Commands::clear(const Image& image, const VkClearColorValue& value)
 {
+    if (gl_) return gl_->clear(image, value);
     const VkImageSubresourceRange all{image.aspect(), 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
     state_->vk.vkCmdClearColorImage(buffer_, image.handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &value, 1, &all);
 }
@@ -299,7 +326,7 @@ void Commands::clear(const Image& image, const VkClearColorValue& value)
 void Commands::begin_region(const std::string& region)
 {
     assume(regions_.size() < kMaxRegions);
-    if (state_->limits.timestamp_ns > 0 && !queries_) {
+    if (!gl_ && state_->limits.timestamp_ns > 0 && !queries_) {
         const VkQueryPoolCreateInfo info{.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
                                          .queryType = VK_QUERY_TYPE_TIMESTAMP,
                                          .queryCount = 2 * kMaxRegions};
@@ -312,6 +339,7 @@ void Commands::begin_region(const std::string& region)
     const auto index = static_cast<std::uint32_t>(regions_.size());
     regions_.push_back(region);
     open_regions_.push_back(index);
+    if (gl_) gl_->stamp(2 * index);
     if (queries_)
         state_->vk.vkCmdWriteTimestamp2(buffer_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries_.get(), 2 * index);
 }
@@ -321,6 +349,7 @@ void Commands::end_region()
     assume(!open_regions_.empty());
     const std::uint32_t index = open_regions_.back();
     open_regions_.pop_back();
+    if (gl_) gl_->stamp(2 * index + 1);
     if (queries_)
         state_->vk.vkCmdWriteTimestamp2(buffer_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries_.get(), 2 * index + 1);
 }
@@ -328,6 +357,11 @@ void Commands::end_region()
 std::vector<RegionTime> Commands::times() const
 {
     std::vector<RegionTime> out;
+    if (gl_ && last_ != 0) {
+        const std::vector<std::uint64_t> stamps = gl_->stamps();
+        for (std::size_t i = 0; i < regions_.size(); ++i)
+            out.push_back({regions_[i], static_cast<double>(stamps[2 * i + 1] - stamps[2 * i]) * 1e-6});
+    }
     if (!queries_ || last_ == 0) return out;
     std::vector<std::uint64_t> ticks(2 * regions_.size());
     check(state_->vk.vkGetQueryPoolResults(state_->device, queries_.get(), 0, static_cast<std::uint32_t>(ticks.size()),
@@ -351,6 +385,7 @@ void Commands::end()
 
 Ticket Commands::submit()
 {
+    if (gl_) return last_ = gl_->submit();
     return submit(VK_NULL_HANDLE, VK_NULL_HANDLE);
 }
 
@@ -386,6 +421,7 @@ Ticket Commands::submit(VkSemaphore wait, VkSemaphore signal)
 
 void Commands::wait(std::chrono::milliseconds timeout) const
 {
+    if (gl_) return gl_->device().wait(last_, timeout);
     if (last_ != 0) gpu::wait(*state_, last_, timeout);
 }
 

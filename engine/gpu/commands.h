@@ -116,10 +116,13 @@ class Commands {
     VkCommandBuffer handle() const { return buffer_; }
 
  private:
+    void begin_gl(std::span<const ColorTarget> colors, const std::optional<DepthTarget>& depth);
+
     void end();
     void bind(VkPipelineBindPoint point, VkPipeline pipeline, const Layout& layout);
 
-    DeviceState* state_ = nullptr;
+    DeviceState* state_ = nullptr;  // by Vulkan
+    GlOwned<GlCommands> gl_;        // by OpenGL
     Owned<VkCommandPool, destroy_command_pool> pool_;
     Owned<VkQueryPool, destroy_query_pool> queries_;
     VkCommandBuffer buffer_ = VK_NULL_HANDLE;

@@ -8,6 +8,7 @@
 #include "engine/base/error.h"
 #include "engine/base/memory.h"
 #include "engine/gpu/device_state.h"
+#include "engine/gpu/gl_device.h"
 
 namespace etalon::gpu {
 namespace {
@@ -27,22 +28,6 @@ namespace {
 std::uint64_t default_budget(const DeviceReport& report)
 {
     return (report.kind == DeviceKind::cpu ? memory_of_machine() : report.memory) / 4 * 3;
-}
-
-/// A software device's threads and compiler take address space, and lavapipe 22.3.6 crashes where they get none:
-/// measured with 2 processors, whose threads reserve 128 MiB each, 620 MiB beyond what it has when loaded were too few,
-/// 825 were enough.
-void check_address_space(const DeviceReport& report)
-{
-    if (report.kind != DeviceKind::cpu) return;
-    constexpr std::uint64_t kMiB = 1 << 20;
-    const std::uint64_t need = (564 + 128 * std::uint64_t{std::max(1u, std::thread::hardware_concurrency())}) * kMiB;
-    const std::uint64_t have = address_space_left();
-    if (have >= need) return;
-    throw Error(Blame::machine,
-                fmt::format("the device {} needs about {} MiB of address space; this process may have {} more",
-                            report.name, need / kMiB, have / kMiB),
-                "raise the limit (ulimit -v), or use --renderer reference");
 }
 
 /// Required features, and those optional ones that something in this project can use.
@@ -88,6 +73,21 @@ struct Features {
 
 }  // namespace
 
+/// A software device's threads and compiler take address space, and lavapipe 22.3.6 crashes where they get none:
+/// measured with 2 processors, whose threads reserve 128 MiB each, 620 MiB beyond what it has when loaded were too few,
+/// 825 were enough.
+void check_address_space(std::string_view device)
+{
+    constexpr std::uint64_t kMiB = 1 << 20;
+    const std::uint64_t need = (564 + 128 * std::uint64_t{std::max(1u, std::thread::hardware_concurrency())}) * kMiB;
+    const std::uint64_t have = address_space_left();
+    if (have >= need) return;
+    throw Error(Blame::machine,
+                fmt::format("the device {} needs about {} MiB of address space; this process may have {} more", device,
+                            need / kMiB, have / kMiB),
+                "raise the limit (ulimit -v), or use --renderer reference");
+}
+
 DeviceState::DeviceState(const DeviceOptions& options) : instance(options)
 {
     const std::vector<Candidate> judged = choose(instance, options);
@@ -107,7 +107,7 @@ DeviceState::DeviceState(const DeviceOptions& options) : instance(options)
 
 void DeviceState::create(const Candidate& candidate)
 {
-    check_address_space(candidate.report);
+    if (candidate.report.kind == DeviceKind::cpu) check_address_space(candidate.report.name);
     report = candidate.report;
     physical = candidate.physical;
     queue_family = candidate.queue_family;
@@ -181,63 +181,83 @@ void wait(const DeviceState& state, Ticket ticket, std::chrono::milliseconds tim
     check(result, "vkWaitSemaphores");
 }
 
-Device::Device(const DeviceOptions& options) : options_(options), state_(std::make_unique<DeviceState>(options)) {}
+std::string_view name(Backend backend)
+{
+    return backend == Backend::vulkan ? "vulkan" : "opengl";
+}
+
+Device::Device(const DeviceOptions& options) : options_(options)
+{
+    make();
+}
 Device::Device(Device&&) noexcept = default;
 Device& Device::operator=(Device&&) noexcept = default;
 Device::~Device() = default;
 
+void Device::make()
+{
+    if (options_.backend == Backend::opengl)
+        gl_ = std::make_unique<GlDevice>(options_);
+    else
+        state_ = std::make_unique<DeviceState>(options_);
+}
+
 void Device::renew()
 {
-    if (state_) earlier_messages_ = validation_messages();
+    if (state_ || gl_) earlier_messages_ = validation_messages();
     state_.reset();  // before the new one: some drivers have room for one alone
-    state_ = std::make_unique<DeviceState>(options_);
+    gl_.reset();
+    make();
 }
 
 const DeviceReport& Device::report() const
 {
-    return state_->report;
+    return gl_ ? gl_->report() : state_->report;
 }
 const std::vector<DeviceReport>& Device::candidates() const
 {
-    return state_->candidates;
+    return gl_ ? gl_->candidates() : state_->candidates;
 }
 const DeviceLimits& Device::limits() const
 {
-    return state_->limits;
+    return gl_ ? gl_->limits() : state_->limits;
 }
 MemoryUse Device::memory() const
 {
-    return state_->memory->use();
+    return gl_ ? gl_->memory() : state_->memory->use();
 }
 bool Device::unified_memory() const
 {
-    return state_->memory->unified();
+    return !gl_ && state_->memory->unified();
 }
 VkInstance Device::instance() const
 {
-    return state_->instance.handle;
+    return state().instance.handle;
 }
 VkSurfaceKHR Device::surface() const
 {
-    return state_->instance.surface;
+    return state().instance.surface;
 }
 bool Device::validating() const
 {
-    return state_->instance.validating;
+    return gl_ ? gl_->validating() : state_->instance.validating;
 }
 
 std::string Device::description() const
 {
-    return fmt::format("{}, {}, Vulkan {}", report().name, report().driver, report().api_version);
+    return fmt::format("{}, {}, {} {}", report().name, report().driver, gl_ ? "OpenGL" : "Vulkan",
+                       report().api_version);
 }
 
 void Device::wait(Ticket ticket, std::chrono::milliseconds timeout) const
 {
+    if (gl_) return gl_->wait(ticket, timeout);
     gpu::wait(*state_, ticket, timeout);
 }
 
 bool Device::supports(VkFormat format, VkFormatFeatureFlags features, std::uint32_t samples) const
 {
+    if (gl_) return gl_->supports(format, samples);
     const InstanceTable& vk = state_->instance.vk;
     VkFormatProperties has{};
     vk.vkGetPhysicalDeviceFormatProperties(state_->physical, format, &has);
@@ -256,6 +276,7 @@ bool Device::supports(VkFormat format, VkFormatFeatureFlags features, std::uint3
 
 bool Device::finished(Ticket ticket) const
 {
+    if (gl_) return gl_->finished(ticket);
     std::uint64_t value = 0;
     check(state_->vk.vkGetSemaphoreCounterValue(state_->device, state_->timeline, &value),
           "vkGetSemaphoreCounterValue");
@@ -264,6 +285,7 @@ bool Device::finished(Ticket ticket) const
 
 void Device::wait_idle() const
 {
+    if (gl_) return gl_->gl().Finish();
     const std::lock_guard lock(state_->queue_mutex);
     check(state_->vk.vkDeviceWaitIdle(state_->device), "vkDeviceWaitIdle");
 }
@@ -271,6 +293,11 @@ void Device::wait_idle() const
 std::vector<std::string> Device::validation_messages() const
 {
     std::vector<std::string> messages = earlier_messages_;
+    if (gl_) {
+        const std::vector<std::string> said = gl_->messages();
+        messages.insert(messages.end(), said.begin(), said.end());
+        return messages;
+    }
     const std::lock_guard lock(state_->instance.log.mutex);
     messages.insert(messages.end(), state_->instance.log.messages.begin(), state_->instance.log.messages.end());
     return messages;

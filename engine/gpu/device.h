@@ -16,11 +16,16 @@
 namespace etalon::gpu {
 
 struct DeviceState;
+class GlDevice;
 
 enum class DeviceKind { cpu, gpu };  ///< cpu: software (lavapipe); gpu: everything else
 std::string_view name(DeviceKind kind);
 
-/// One Vulkan device of this machine, and why it is not the one in use.
+/// What does a device's work.
+enum class Backend { vulkan, opengl };
+std::string_view name(Backend backend);  ///< "vulkan", "opengl"
+
+/// One device of this machine, and why it is not the one in use.
 struct DeviceReport {
     unsigned index = 0;  ///< in the loader's order; what DeviceOptions::device accepts
     std::string name;
@@ -34,6 +39,7 @@ struct DeviceReport {
 };
 
 struct DeviceOptions {
+    Backend backend = Backend::vulkan;
     std::string device;  ///< an index, or a part of the name (case ignored); empty: GPUs first, then the CPU
     std::optional<DeviceKind> kind;  ///< only this kind will do
     bool validate = false;           ///< core and synchronization validation; see Device::validation_messages
@@ -102,7 +108,8 @@ struct MemoryUse {
 /// list is empty then, or all its entries have reasons. Throws Error(machine) when there is no Vulkan loader.
 std::vector<DeviceReport> list_devices(const DeviceOptions& options = {});
 
-/// A logical Vulkan 1.3 device with one graphics and compute queue, on which everything in engine/gpu is made and which
+/// A device by Vulkan or OpenGL. By Vulkan:
+/// a logical Vulkan 1.3 device with one graphics and compute queue, on which everything in engine/gpu is made and which
 /// must outlive it all. Required of a device: dynamic rendering, synchronization2, timeline semaphores, buffer device
 /// address, scalar block layout. Creation throws Error(machine) with every device's reasons when none will do.
 /// Movable; submit and memory calls may come from several threads.
@@ -147,13 +154,23 @@ class Device {
 
     VkInstance instance() const;
     VkSurfaceKHR surface() const;  ///< null unless options.make_surface was given
-    /// For the other files of engine/gpu.
-    DeviceState& state() const { return *state_; }
+    Backend backend() const { return options_.backend; }
+    /// For the other files of engine/gpu. By Vulkan alone.
+    DeviceState& state() const
+    {
+        assume(state_ != nullptr);
+        return *state_;
+    }
+    /// By OpenGL; null by Vulkan.
+    GlDevice* gl() const { return gl_.get(); }
 
  private:
     DeviceOptions options_;
     std::vector<std::string> earlier_messages_;  // of validation, before renewals
-    std::unique_ptr<DeviceState> state_;
+    void make();
+
+    std::unique_ptr<DeviceState> state_;  // of one backend or the other
+    std::unique_ptr<GlDevice> gl_;
 };
 
 /// Versions of what stands between us and the device, for `info`: loader, layers and drivers ("name version" each).

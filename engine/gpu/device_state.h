@@ -106,6 +106,9 @@ struct DeviceState {
     void release();
 };
 
+/// Throws Error(machine) where too little address space is left for a software device's threads and compiler.
+void check_address_space(std::string_view device);
+
 /// Device::wait.
 void wait(const DeviceState& state, Ticket ticket, std::chrono::milliseconds timeout);
 

@@ -9,6 +9,7 @@
 #include "engine/gpu/buffer.h"
 #include "engine/gpu/commands.h"
 #include "engine/gpu/device_state.h"
+#include "engine/gpu/gl_resources.h"
 
 namespace etalon::gpu {
 namespace {
@@ -93,9 +94,13 @@ std::uint32_t mip_count(std::uint32_t width, std::uint32_t height)
 
 Image::Image(Device& device, const ImageSpec& spec) : spec_(spec)
 {
-    const DeviceState& state = device.state();
     assume(spec.width > 0 && spec.height > 0 && spec.layers > 0);
     if (spec_.mips == 0) spec_.mips = mip_count(spec.width, spec.height);
+    if (GlDevice* gl = device.gl()) {
+        gl_.reset(new GlImage(*gl, spec_));
+        return;
+    }
+    const DeviceState& state = device.state();
     VkImageUsageFlags usage = spec.usage;
     if (spec.samples == 1) usage |= kAlways;
     check_limits(state, spec_, usage);
@@ -183,6 +188,10 @@ std::vector<std::byte> download(Device& device, Image& image, std::uint32_t mip,
 
 Sampler::Sampler(Device& device, const SamplerSpec& spec)
 {
+    if (GlDevice* gl = device.gl()) {
+        gl_.reset(new GlSampler(*gl, spec));
+        return;
+    }
     const DeviceState& state = device.state();
     const float anisotropy = std::min(spec.anisotropy, state.limits.anisotropy);
     const VkSamplerCreateInfo info{.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/gpu/device.h"
+#include "engine/gpu/gl_owned.h"
 #include "engine/gpu/memory.h"
 #include "engine/gpu/owned.h"
 
@@ -50,7 +51,9 @@ class Image {
     std::uint32_t mips() const { return spec_.mips; }
     std::uint32_t samples() const { return spec_.samples; }
     VkImageAspectFlags aspect() const;
-    explicit operator bool() const { return static_cast<bool>(image_); }
+    explicit operator bool() const { return image_ || gl_; }
+    /// By OpenGL; null by Vulkan.
+    GlImage* gl() const { return gl_.get(); }
 
     ImageUse use() const { return use_; }
     void set_use(ImageUse use) { use_ = use; }
@@ -63,6 +66,7 @@ class Image {
     Owned<VkImageView, destroy_image_view> view_;
     ImageSpec spec_;
     ImageUse use_ = ImageUse::undefined;
+    GlOwned<GlImage> gl_;
 };
 
 /// Bytes of one texel of an uncompressed format this project uses; Error(input) for others.
@@ -106,8 +110,11 @@ class Sampler {
     Sampler() = default;
     Sampler(Device& device, const SamplerSpec& spec);
     VkSampler handle() const { return sampler_.get(); }
+    /// By OpenGL; null by Vulkan.
+    GlSampler* gl() const { return gl_.get(); }
 
  private:
+    GlOwned<GlSampler> gl_;
     Owned<VkSampler, destroy_sampler> sampler_;
 };
 

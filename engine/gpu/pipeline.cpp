@@ -6,6 +6,7 @@
 
 #include "engine/base/error.h"
 #include "engine/gpu/device_state.h"
+#include "engine/gpu/gl_pipeline.h"
 
 namespace etalon::gpu {
 namespace {
@@ -172,7 +173,6 @@ void destroy_set_layout(const DeviceState& state, VkDescriptorSetLayout layout)
 
 Layout::Layout(Device& device, std::span<const Interface> stages, std::string name) : name_(std::move(name))
 {
-    const DeviceState& state = device.state();
     for (const Interface& stage : stages) {
         for (const DeclaredBinding& declared : stage.bindings) {
             const auto same = std::find_if(bindings_.begin(), bindings_.end(), [&](const DeclaredBinding& other) {
@@ -189,10 +189,12 @@ Layout::Layout(Device& device, std::span<const Interface> stages, std::string na
         push_constants_ = std::max(push_constants_, stage.push_constants);
         if (stage.push_constants > 0) push_stages_ |= static_cast<VkShaderStageFlags>(stage.stage);
     }
-    if (push_constants_ > state.limits.push_constants)
+    if (push_constants_ > device.limits().push_constants)
         throw Error(Blame::machine, fmt::format("{} bytes of push constants are needed; this device allows {}",
-                                                push_constants_, state.limits.push_constants));
+                                                push_constants_, device.limits().push_constants));
+    if (device.gl() != nullptr) return;
 
+    const DeviceState& state = device.state();
     std::uint32_t set_count = 0;
     for (const DeclaredBinding& declared : bindings_) set_count = std::max(set_count, declared.set + 1);
     std::vector<VkDescriptorSetLayout> handles;
@@ -224,10 +226,14 @@ Layout::Layout(Device& device, std::span<const Interface> stages, std::string na
 
 ComputePipeline::ComputePipeline(Device& device, const ComputePipelineSpec& spec)
 {
-    const DeviceState& state = device.state();
     const Interface found = reflect_as(spec.shader, VK_SHADER_STAGE_COMPUTE_BIT, spec.name);
     std::copy_n(found.workgroup, 3, workgroup_);
     layout_ = Layout(device, std::span(&found, 1), spec.name);
+    if (GlDevice* gl = device.gl()) {
+        gl_.reset(new GlPipeline(*gl, spec));
+        return;
+    }
+    const DeviceState& state = device.state();
     const Stage stage(state, spec.shader, VK_SHADER_STAGE_COMPUTE_BIT);
     const VkComputePipelineCreateInfo info{
         .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO, .stage = stage.info(), .layout = layout_.handle()};
@@ -242,10 +248,14 @@ ComputePipeline::ComputePipeline(Device& device, const ComputePipelineSpec& spec
 GraphicsPipeline::GraphicsPipeline(Device& device, const GraphicsPipelineSpec& spec)
     : cull_(spec.cull), front_(spec.front)
 {
-    const DeviceState& state = device.state();
     const Interface stages[] = {reflect_as(spec.vertex, VK_SHADER_STAGE_VERTEX_BIT, spec.name),
                                 reflect_as(spec.fragment, VK_SHADER_STAGE_FRAGMENT_BIT, spec.name)};
     layout_ = Layout(device, stages, spec.name);
+    if (GlDevice* gl = device.gl()) {
+        gl_.reset(new GlPipeline(*gl, spec));
+        return;
+    }
+    const DeviceState& state = device.state();
     const VkPipeline pipeline = create_graphics(state, spec, layout_.handle());
     pipeline_ = {state, pipeline};
     set_name(state, VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(pipeline), spec.name);

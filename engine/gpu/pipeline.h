@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "engine/gpu/device.h"
+#include "engine/gpu/gl_owned.h"
 #include "engine/gpu/owned.h"
 #include "engine/gpu/shader.h"
 
@@ -47,6 +48,8 @@ class ComputePipeline {
     ComputePipeline(Device& device, const ComputePipelineSpec& spec);
 
     VkPipeline handle() const { return pipeline_.get(); }
+    /// By OpenGL; null by Vulkan.
+    const GlPipeline* gl() const { return gl_.get(); }
     const Layout& layout() const { return layout_; }
     /// Invocations of one workgroup along x, y, z (as compiled: a local size set by specialization is not seen here).
     std::uint32_t workgroup(int axis) const { return workgroup_[axis]; }
@@ -54,6 +57,7 @@ class ComputePipeline {
  private:
     Layout layout_;
     Owned<VkPipeline, destroy_pipeline> pipeline_;
+    GlOwned<GlPipeline> gl_;
     std::uint32_t workgroup_[3] = {1, 1, 1};
 };
 
@@ -110,6 +114,8 @@ class GraphicsPipeline {
     GraphicsPipeline(Device& device, const GraphicsPipelineSpec& spec);
 
     VkPipeline handle() const { return pipeline_.get(); }
+    /// By OpenGL; null by Vulkan.
+    const GlPipeline* gl() const { return gl_.get(); }
     const Layout& layout() const { return layout_; }
     VkCullModeFlags cull() const { return cull_; }
     VkFrontFace front() const { return front_; }
@@ -117,6 +123,7 @@ class GraphicsPipeline {
  private:
     Layout layout_;
     Owned<VkPipeline, destroy_pipeline> pipeline_;
+    GlOwned<GlPipeline> gl_;
     VkCullModeFlags cull_ = VK_CULL_MODE_NONE;
     VkFrontFace front_ = VK_FRONT_FACE_COUNTER_CLOCKWISE;
 };

@@ -1,59 +1,11 @@
-#include <spirv_cross/spirv_cross_c.h>
-
 #include <algorithm>
-#include <memory>
 
 #include "engine/base/error.h"
 #include "engine/gpu/shader.h"
+#include "engine/gpu/spirv_module.h"
 
 namespace etalon::gpu {
 namespace {
-
-struct DestroyContext {
-    void operator()(spvc_context context) const { spvc_context_destroy(context); }
-};
-using Context = std::unique_ptr<std::remove_pointer_t<spvc_context>, DestroyContext>;
-
-/// The SPIR-V of one entry point under SPIRV-Cross.
-class Module {
- public:
-    explicit Module(std::span<const std::uint32_t> code)
-    {
-        spvc_context context = nullptr;
-        if (spvc_context_create(&context) != SPVC_SUCCESS) throw Error(Blame::machine, "out of memory in SPIRV-Cross");
-        context_.reset(context);
-        spvc_parsed_ir ir = nullptr;
-        check(spvc_context_parse_spirv(context, code.data(), code.size(), &ir));
-        check(
-            spvc_context_create_compiler(context, SPVC_BACKEND_NONE, ir, SPVC_CAPTURE_MODE_TAKE_OWNERSHIP, &compiler_));
-        check(spvc_compiler_create_shader_resources(compiler_, &resources_));
-    }
-
-    void check(spvc_result result) const
-    {
-        if (result == SPVC_SUCCESS) return;
-        const std::string why = spvc_context_get_last_error_string(context_.get());
-        // Whatever was thrown within is an invalid shader to it, with the exception's name as the reason.
-        if (result == SPVC_ERROR_OUT_OF_MEMORY || why.find("bad_alloc") != std::string::npos)
-            throw Error(Blame::machine, "no memory to look at a shader");
-        throw Error(Blame::input, "this is not a SPIR-V shader: " + why);
-    }
-
-    std::span<const spvc_reflected_resource> list(spvc_resource_type type) const
-    {
-        const spvc_reflected_resource* first = nullptr;
-        std::size_t count = 0;
-        check(spvc_resources_get_resource_list_for_type(resources_, type, &first, &count));
-        return {first, count};
-    }
-
-    spvc_compiler compiler() const { return compiler_; }
-
- private:
-    Context context_;
-    spvc_compiler compiler_ = nullptr;
-    spvc_resources resources_ = nullptr;
-};
 
 VkShaderStageFlagBits stage_of(SpvExecutionModel model)
 {
@@ -93,7 +45,7 @@ bool is_image(spvc_resource_type resource)
            resource == SPVC_RESOURCE_TYPE_SEPARATE_IMAGE;
 }
 
-void add_bindings(const Module& module, spvc_resource_type resource, Interface& out)
+void add_bindings(const SpirvModule& module, spvc_resource_type resource, Interface& out)
 {
     for (const spvc_reflected_resource& found : module.list(resource)) {
         const spvc_type type = spvc_compiler_get_type_handle(module.compiler(), found.type_id);
@@ -117,7 +69,7 @@ void add_bindings(const Module& module, spvc_resource_type resource, Interface& 
 
 Interface reflect(std::span<const std::uint32_t> code)
 {
-    const Module module(code);
+    const SpirvModule module(code, SPVC_BACKEND_NONE);
     Interface out{.stage = stage_of(spvc_compiler_get_execution_model(module.compiler()))};
     for (const spvc_resource_type resource :
          {SPVC_RESOURCE_TYPE_UNIFORM_BUFFER, SPVC_RESOURCE_TYPE_STORAGE_BUFFER, SPVC_RESOURCE_TYPE_STORAGE_IMAGE,
