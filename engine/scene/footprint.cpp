@@ -99,7 +99,8 @@ void check_memory(const Footprint& footprint, std::uint64_t memory)
     throw Error(Blame::machine,
                 fmt::format("this needs about {} of memory ({}); it may have {}", describe_bytes(footprint.total()),
                             describe(footprint), describe_bytes(memory)),
-                "--degrade takes smaller textures or a smaller picture; --memory N allows more where there is more");
+                "a smaller --size or scene needs less (`render --degrade` makes both smaller); --memory N allows more where there "
+                "is more");
 }
 
 std::string describe_bytes(std::uint64_t bytes)

@@ -76,11 +76,10 @@ struct Inventory {
     std::size_t spheres = 0;
     std::size_t instances = 0;  ///< of EXT_mesh_gpu_instancing
 
-    /// Predicted bytes. Geometry: every attribute once (48 bytes a vertex with normals, tangents and uv; 4 an index);
-    /// textures: RGBA8 or RGBA32F with a full chain of mip levels (4/3).
+    /// Bytes. Geometry: every attribute once (48 bytes a vertex with normals, tangents and uv; 4 an index);
+    /// textures: RGBA8 or RGBA32F with a full chain of mip levels (4/3). What a renderer needs: footprint.h.
     std::uint64_t geometry_bytes = 0;
     std::uint64_t texture_bytes = 0;
-    std::uint64_t total_bytes() const { return geometry_bytes + texture_bytes; }
 };
 
 Inventory describe(const Scene& scene);

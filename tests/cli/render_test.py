@@ -149,8 +149,15 @@ class Info(Case):
     def test_a_scene_is_listed_with_the_memory_it_takes(self):
         document = self.run_etalon("info", self.write("x.glb", glb()), "--json").json
         self.assertEqual((document["counts"]["triangles"], document["counts"]["vertices"]), (1, 3))
-        self.assertGreater(document["predicted_bytes"]["total"], 0)
-        self.assertIn("triangles 1", self.run_etalon("info", self.path("x.glb")).out.decode())
+        self.assertEqual(document["picture"], {"width": 1280, "height": 720})
+        self.assertEqual(list(document["predicted_bytes"]), ["raster", "path", "reference", "reference-raster"])
+        for need in document["predicted_bytes"].values():
+            total = need.pop("total")
+            self.assertEqual(sum(need.values()), total)
+            self.assertGreater(need["picture"], 1280 * 720 * 16)
+        text = self.run_etalon("info", self.path("x.glb")).out.decode()
+        self.assertIn("triangles 1", text)
+        self.assertRegex(text, r"\n  path about [\d.]+ MiB \(program")
 
 
 class Diff(Case):

@@ -3,17 +3,37 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "engine/scene/footprint.h"
 #include "engine/scene/inventory.h"
+#include "engine/scene/pose.h"
 #include "tools/etalon/json.h"
 #include "tools/etalon/scenes.h"
+#include "tools/etalon/settings.h"
 #include "tools/etalon/terminal.h"
 
 namespace etalon::cli {
 namespace {
 
-std::string mebibytes(std::uint64_t bytes)
+/// What rendering the scene as its file has it would take, by renderer.
+struct Needs {
+    ivec2 size{0};
+    std::vector<std::pair<Renderer, Footprint>> rows;
+};
+
+Needs needs_of(const Scene& scene, const Arguments& arguments)
 {
-    return fmt::format("{:.1f} MiB", static_cast<double>(bytes) / (1 << 20));
+    PoseSettings settings;
+    settings.no_environment = true;
+    settings.limits = limits(arguments);
+    const PosedScene posed = pose(scene, settings);
+    Needs needs{.size = ivec2(posed.view.width, posed.view.height), .rows = {}};
+    for (const Renderer renderer :
+         {Renderer::raster, Renderer::path, Renderer::reference, Renderer::reference_raster}) {
+        RenderSettings render;
+        render.renderer = renderer;
+        needs.rows.emplace_back(renderer, predict(posed, render));
+    }
+    return needs;
 }
 
 /// "cameras (2)" and a line for each; nothing where there is none.
@@ -38,14 +58,16 @@ std::string projection(const Inventory::CameraRow& camera)
     return fmt::format("perspective, {:.4g} degrees{}", camera.yfov, lens);
 }
 
-std::string as_text(const Inventory& scene)
+std::string as_text(const Inventory& scene, const Needs& needs)
 {
     std::string text = fmt::format(
         "nodes {}, meshes {}, primitives {}, vertices {}, triangles {}, lines {}, points {}, spheres {}, instances {}\n"
-        "memory: about {} (geometry {}, textures {})\n",
+        "holds: geometry {}, textures {}\n",
         scene.nodes, scene.meshes, scene.primitives, scene.vertices, scene.triangles, scene.lines, scene.points,
-        scene.spheres, scene.instances, mebibytes(scene.total_bytes()), mebibytes(scene.geometry_bytes),
-        mebibytes(scene.texture_bytes));
+        scene.spheres, scene.instances, describe_bytes(scene.geometry_bytes), describe_bytes(scene.texture_bytes));
+    text += fmt::format("memory to render it at {}x{}, predicted\n", needs.size.x, needs.size.y);
+    for (const auto& [renderer, need] : needs.rows)
+        text += fmt::format("  {} about {} ({})\n", name(renderer), describe_bytes(need.total()), describe(need));
     const auto as_is = [](const std::string& name) { return called(name); };
     text += section("scenes", scene.roots, [](const Inventory::RootRow& row) {
         return fmt::format("{}, {} nodes{}", called(row.name), row.nodes, row.is_default ? ", the default" : "");
@@ -86,7 +108,16 @@ Json list(const Rows& rows, const Convert& convert)
     return values;
 }
 
-Json as_json(const Inventory& scene, const std::string& name)
+Json as_json(const Footprint& need)
+{
+    return Json::object({{"program", need.program},
+                         {"geometry", need.geometry},
+                         {"textures", need.textures},
+                         {"picture", need.picture},
+                         {"total", need.total()}});
+}
+
+Json as_json(const Inventory& scene, const Needs& needs, const std::string& scene_name)
 {
     const Json roots = list(scene.roots, [](const Inventory::RootRow& row) {
         return Json::object({{"name", row.name}, {"nodes", row.nodes}, {"default", row.is_default}});
@@ -133,12 +164,15 @@ Json as_json(const Inventory& scene, const std::string& name)
                                       {"spheres", scene.spheres},
                                       {"instances", scene.instances},
                                       {"morph_targets", scene.morph_targets}});
-    const Json bytes = Json::object(
-        {{"geometry", scene.geometry_bytes}, {"textures", scene.texture_bytes}, {"total", scene.total_bytes()}});
+    const Json bytes = Json::object({{"geometry", scene.geometry_bytes}, {"textures", scene.texture_bytes}});
+    std::vector<std::pair<std::string, Json>> predicted;
+    for (const auto& [renderer, need] : needs.rows) predicted.emplace_back(name(renderer), as_json(need));
     return Json::object({{"schema", "etalon-scene/1"},
-                         {"scene", name},
+                         {"scene", scene_name},
                          {"counts", counts},
-                         {"predicted_bytes", bytes},
+                         {"bytes", bytes},
+                         {"picture", Json::object({{"width", needs.size.x}, {"height", needs.size.y}})},
+                         {"predicted_bytes", Json::object(predicted)},
                          {"scenes", roots},
                          {"cameras", cameras},
                          {"lights", lights},
@@ -157,8 +191,10 @@ Json as_json(const Inventory& scene, const std::string& name)
 int scene_info(const Arguments& arguments)
 {
     const std::string& name = arguments.positional().front();
-    const Inventory scene = describe(open_scene(name, arguments));
-    put(arguments.has("json") ? as_json(scene, name).text() + "\n" : as_text(scene));
+    const Scene scene = open_scene(name, arguments);
+    const Inventory inventory = describe(scene);
+    const Needs needs = needs_of(scene, arguments);
+    put(arguments.has("json") ? as_json(inventory, needs, name).text() + "\n" : as_text(inventory, needs));
     return 0;
 }
 
