@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/measure/diff.h"
+#include "engine/measure/picture_error.h"
 #include "engine/measure/report.h"
 #include "engine/measure/stability.h"
 #include "engine/measure/text.h"
@@ -132,7 +133,40 @@ Json timing_json(const Timing& time)
             {"all", time.seconds}};
 }
 
+Json estimate_json(const Estimate& estimate)
+{
+    return {{"value", number(estimate.value)}, {"low", number(estimate.low)}, {"high", number(estimate.high)}};
+}
+
+Json picture_error(const PictureError& error)
+{
+    Json map = Json::array();
+    for (const double cell : error.map) map.push_back(number(cell));
+    return {{"text", describe(error)},
+            {"rmse_nit", estimate_json(error.rmse)},
+            {"relative", estimate_json(error.relative)},
+            {"relmse", estimate_json(error.relmse)},
+            {"display_steps", estimate_json(error.display)},
+            {"brightness", estimate_json(error.brightness)},
+            {"systematic", error.systematic ? estimate_json(*error.systematic) : Json(nullptr)},
+            {"mean_nit", number(error.mean)},
+            {"probe",
+             {{"pixels", error.pixels},
+              {"samples", error.samples},
+              {"max_depth", error.depth},
+              {"left_out", error.left_out},
+              {"cut_by_time", error.cut}}},
+            {"map", {{"columns", error.cells_x}, {"rows", error.cells_y}, {"relative", map}}}};
+}
+
 }  // namespace
+
+std::string picture_error_json(const PictureError& error)
+{
+    Json out{{"schema", "etalon-picture-error/1"}};
+    out.update(picture_error(error));
+    return dump(out);
+}
 
 std::string report_json(const Report& report)
 {
