@@ -10,6 +10,7 @@
 #include "engine/math/transform.h"
 #include "engine/render/path_emission.h"
 #include "engine/render/path_layers.h"
+#include "engine/scene/glass.h"
 #include "shaders/shared/path.h"
 
 namespace etalon {
@@ -167,6 +168,7 @@ class Flattening {
         if (gltf && !m.double_sided && !body) flags |= shared::kPrimitiveCulled;
         if (m.alpha_mode != AlphaMode::opaque) flags |= shared::kPrimitiveAlpha;
         if (m.double_sided && !m.emits_front_only) flags |= shared::kPrimitiveEmitsBack;
+        if (features_.glass_shadows && is_smooth_thin_glass(m)) flags |= shared::kPrimitiveGlass;
         return flags;
     }
 
@@ -227,7 +229,7 @@ class Flattening {
             sphere ? posed_.spheres[source.element].material : posed_.primitive(posed_.draws[source.draw]).material;
         const Material& m = material(index);
         if (m.model == BsdfModel::unlit || m.emission == dvec3(0)) return;
-        PathEmitter emitter{.primitive = static_cast<std::uint32_t>(position)};
+        PathEmitter emitter{.primitive = static_cast<std::uint32_t>(position), .box = boxes_[out_.bvh.order[position]]};
         double radiance = 0;
         if (sphere) {
             const double radius = posed_.spheres[source.element].radius;
@@ -237,6 +239,8 @@ class Flattening {
             const Primitive& primitive = posed_.primitive(posed_.draws[source.draw]);
             const Corners corners = corners_of(primitive, frames_[source.draw], source.element);
             emitter.area = area_of(corners);
+            const dvec3 a(corners.p[0]);
+            emitter.normal = normalize(cross(dvec3(corners.p[1]) - a, dvec3(corners.p[2]) - a));
             const std::vector<vec2>& uv = primitive.uv[std::size_t(m.emissive_texture.uv_set == 1)];
             std::array<vec2, 3> at{};
             for (std::size_t i = 0; i < 3 && !uv.empty(); ++i) at[i] = uv[corners.vertex[i]];
@@ -244,6 +248,7 @@ class Flattening {
         }
         const bool both = (out_.primitives[3 * position].w & shared::kPrimitiveEmitsBack) != 0;
         emitter.weight = radiance * emitter.area * (both ? 2 : 1);
+        emitter.everywhere = both || sphere;
         if (emitter.weight > 0 && std::isfinite(emitter.weight)) out_.emitters.push_back(emitter);
     }
 
@@ -262,13 +267,6 @@ PathGeometry make_path_geometry(const PosedScene& posed, const PathFeatures& fea
                                 unsigned threads)
 {
     return Flattening(posed, features, origin, threads).run();
-}
-
-void set_light_density(PathGeometry& geometry, const PathEmitter& emitter, double probability)
-{
-    uvec4* const out = &geometry.primitives[3 * std::size_t(emitter.primitive)];
-    const bool sphere = (out[0].w & shared::kPrimitiveSphere) != 0;
-    out[1].w = bits(static_cast<float>(sphere ? probability : probability / emitter.area));
 }
 
 }  // namespace etalon

@@ -3,6 +3,7 @@
 
 #include "engine/geometry/bvh.h"
 #include "engine/render/path_features.h"
+#include "engine/scene/settings.h"
 
 namespace etalon {
 
@@ -11,6 +12,9 @@ struct PathEmitter {
     std::uint32_t primitive = 0;  ///< position in PathGeometry::primitives
     double area = 0;              ///< m²
     double weight = 0;            ///< of being chosen: area × mean radiance × sides
+    Box box;                      ///< relative to the origin
+    dvec3 normal{0, 0, 1};        ///< unit, of a triangle's front
+    bool everywhere = false;      ///< it emits to both sides, or is a sphere
 };
 
 /// A posed scene as one set of primitives, triangles and spheres, in the order of the BVH's leaves, relative to
@@ -29,7 +33,14 @@ struct PathGeometry {
 PathGeometry make_path_geometry(const PosedScene& posed, const PathFeatures& features, const dvec3& origin,
                                 unsigned threads);
 
-/// Writes the chance of each emitter into its primitive: per area for triangles, as it is for spheres.
-void set_light_density(PathGeometry& geometry, const PathEmitter& emitter, double probability);
+/// Emitters as next-event estimation reads them.
+struct EmitterTable {
+    std::vector<uvec4> texels;  ///< an alias table by weight; of a tree a texel a leaf (its primitive), then the nodes
+    std::uint32_t count = 0;    ///< entries or leaves
+    bool tree = false;          ///< few emitters never make one
+};
+/// Also writes into every emitting primitive its place there (PrimitiveData::light_density,
+/// shaders/path/scene_data.glsl).
+EmitterTable emitter_table(PathGeometry& geometry, LightSelection selection);
 
 }  // namespace etalon

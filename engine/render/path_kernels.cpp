@@ -59,7 +59,8 @@ PathKernels make_path_kernels(gpu::Device& device, const PathScene& scene, bool 
 
     const auto lanes_log2 = static_cast<std::uint32_t>(std::bit_width(device.limits().subgroup_size) - 1);
     const Compiler compile(device, path_constants(scene.features) + Constants{{kSpecSubgroupLog2, lanes_log2},
-                                                                              {kSpecRaysPerLane, out.rays_per_lane}});
+                                                                              {kSpecRaysPerLane, out.rays_per_lane},
+                                                                              {kSpecLightTree, scene.light_tree}});
     const std::int32_t in_registers = std::clamp((scene.stack_need + 3) / 4 * 4, 4, kMostRegisterStack);
     const std::int32_t in_memory = std::max(scene.stack_need + 4, 64);
     // In small scenes rays take about as many steps each, so lanes wait for one another and load their rays together;
@@ -92,7 +93,7 @@ PathKernels make_path_kernels(gpu::Device& device, const PathScene& scene, bool 
     return out;
 }
 
-PathQueues make_path_queues(gpu::Device& device, std::uint32_t capacity, std::uint32_t max_depth, bool with_medium)
+PathQueues make_path_queues(gpu::Device& device, std::uint32_t capacity, std::uint32_t max_depth, bool with_more)
 {
     const auto list = [&](const char* name, std::uint64_t bytes_each) {
         PathBuffer out;
@@ -102,7 +103,7 @@ PathQueues make_path_queues(gpu::Device& device, std::uint32_t capacity, std::ui
     };
     PathQueues out;
     out.capacity = capacity;
-    const std::uint64_t bytes_of_path = with_medium ? 64 : 48;
+    const std::uint64_t bytes_of_path = with_more ? 64 : 48;
     out.paths[0] = list("paths 0", bytes_of_path);
     out.paths[1] = list("paths 1", bytes_of_path);
     out.hits.buffer = gpu::Buffer(device, {.size = 4 * std::uint64_t{capacity}, .name = "hits"});

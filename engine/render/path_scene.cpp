@@ -6,7 +6,6 @@
 
 #include "engine/render/albedo.h"
 #include "engine/render/material.h"
-#include "engine/render/path_alias.h"
 #include "engine/render/path_layers.h"
 #include "engine/render/path_sky.h"
 #include "engine/render/path_textures.h"
@@ -29,21 +28,6 @@ PathBuffer upload_list(gpu::Device& device, const std::vector<T>& values, const 
     out.buffer = gpu::make_buffer(device, values, name);
     out.view = gpu::TexelView(device, out.buffer, format);
     return out;
-}
-
-/// Chances by weight, written to the table and to the primitives that emit.
-std::vector<uvec4> emitter_table(PathGeometry& geometry)
-{
-    std::vector<double> weights;
-    for (const PathEmitter& emitter : geometry.emitters) weights.push_back(emitter.weight);
-    const std::vector<AliasEntry> table = make_alias_table(weights);
-    std::vector<uvec4> texels;
-    for (std::size_t i = 0; i < table.size(); ++i) {
-        set_light_density(geometry, geometry.emitters[i], table[i].probability);
-        texels.emplace_back(std::bit_cast<std::uint32_t>(table[i].threshold),
-                            geometry.emitters[table[i].other].primitive, geometry.emitters[i].primitive, 0u);
-    }
-    return texels;
 }
 
 shared::uint background_code(Background background)
@@ -82,12 +66,13 @@ PathScene make_path_scene(gpu::Device& device, const PosedScene& posed, const Re
                           const RenderSettings& settings, const Progress& progress)
 {
     PathScene out;
-    out.features = path_features(posed, required);
+    out.features = path_features(posed, required, settings);
     out.origin = eye_of(posed.view);
 
     progress.report(stage("building the BVH"));
     PathGeometry geometry = make_path_geometry(posed, out.features, out.origin, settings.threads);
-    const std::vector<uvec4> emitters = emitter_table(geometry);
+    const EmitterTable emitters = emitter_table(geometry, settings.light_selection);
+    out.light_tree = emitters.tree;
     out.stack_need = geometry.bvh.stack_need;
     out.primitives = geometry.count;
     out.nodes = geometry.bvh.nodes.size();
@@ -115,13 +100,13 @@ PathScene make_path_scene(gpu::Device& device, const PosedScene& posed, const Re
         for (const PosedLight& light : posed.lights)
             if (light.light.color * light.light.intensity != dvec3(0)) lights.push_back(pack(light, out.origin));
     out.lights = upload_list(device, padded<4>(lights), "lights");
-    out.emitters = upload_list(device, emitters, "emitters");
+    out.emitters = upload_list(device, emitters.texels, "emitters");
     set_sky(device, posed.environment, out);
 
-    out.frame.emitter_count = static_cast<shared::uint>(emitters.size());
+    out.frame.emitter_count = emitters.count;
     out.frame.light_count = static_cast<shared::uint>(lights.size());
     out.frame.strategy_count =
-        shared::uint(!emitters.empty()) + shared::uint(!lights.empty()) + shared::uint(out.frame.cells_x > 0);
+        shared::uint(emitters.count > 0) + shared::uint(!lights.empty()) + shared::uint(out.frame.cells_x > 0);
     out.frame.seed = static_cast<shared::uint>(settings.seed ^ settings.seed >> 32);
     out.frame.max_depth = static_cast<shared::uint>(std::max(settings.max_depth, 1));
     out.frame.roulette = settings.russian_roulette ? 1u : 0u;
@@ -144,6 +129,7 @@ void set_view(shared::PathFrame& frame, const View& view, const dvec3& origin)
     frame.film_x = static_cast<float>(camera.orthographic ? camera.xmag : half * view.width / view.height);
     frame.film_y = static_cast<float>(camera.orthographic ? camera.ymag : half);
     frame.lens_radius = static_cast<float>(camera.lens ? camera.lens->aperture_radius : 0);
+    frame.lens_blades = static_cast<shared::uint>(camera.lens ? std::max(camera.lens->blades, 0) : 0);
     frame.focus_distance = static_cast<float>(camera.lens ? camera.lens->focus_distance : 1);
 }
 

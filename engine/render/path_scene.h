@@ -16,6 +16,7 @@ struct PathBuffer {
 /// A posed scene on the device, for the kernels of shaders/path. Layouts: shaders/shared/path.h.
 struct PathScene {
     PathFeatures features;
+    bool light_tree = false;    ///< emitters are chosen by a tree
     dvec3 origin{0};            ///< world: what positions on the device are relative to
     shared::PathFrame frame{};  ///< the scene's part of it; the view's is filled by set_view
     int stack_need = 0;         ///< of the BVH

@@ -47,14 +47,62 @@ constexpr std::array kKnobs = {
          .buys = "time of paths that carry little",
          .costs = "some variance",
          .metric = KnobMetric::relmse},
+    Knob{.name = "sampler",
+         .type = NameChoice{{"pcg", "sobol"}, 2},
+         .field = &RenderSettings::sampler,
+         .unit = "",
+         .scope = KnobScope::path,
+         .what = "random numbers of paths: independent ones, or Owen-scrambled Sobol points, which fill their squares "
+                 "evenly",
+         .buys = "sobol: an error that falls faster with the samples where pictures are smooth",
+         .costs = "sobol: the estimated error is then an upper bound, not the error itself",
+         .metric = KnobMetric::relmse},
+    Knob{.name = "glass-shadows",
+         .type = Switch{},
+         .field = &RenderSettings::glass_shadows,
+         .unit = "",
+         .scope = KnobScope::path,
+         .what = "look for lights through smooth thin glass (window panes, bulbs) instead of finding them by chance",
+         .buys = "on: far less noise where lamps are behind glass",
+         .costs = "on: glass blurs nothing, not even by its least roughness; a little time",
+         .metric = KnobMetric::relmse},
+    Knob{.name = "light-selection",
+         .type = NameChoice{{"tree", "power"}, 2},
+         .field = &RenderSettings::light_selection,
+         .unit = "",
+         .scope = KnobScope::path,
+         .what = "how emitters are chosen: by a tree that knows what each may send to the point, or by power alone",
+         .buys = "power: the walk down the tree at every surface",
+         .costs = "power: variance where many lights are spread over the scene",
+         .metric = KnobMetric::relmse},
     Knob{.name = "msaa",
-         .type = CountChoice{{1, 4}, 2},
+         .type = CountChoice{{1, 2, 4, 8, 16}, 5},
          .field = &RenderSettings::msaa,
          .unit = "samples/pixel",
          .scope = KnobScope::raster,
-         .what = "coverage samples per pixel of the rasterizers",
+         .what = "coverage samples per drawn pixel of the rasterizers, as the device has them (`etalon info`)",
          .buys = "memory and fill time of the other samples",
          .costs = "stairs along edges",
+         .metric = KnobMetric::relmse,
+         .tried = {"1", "4"}},  // the counts that every Vulkan device has
+    Knob{.name = "ssaa",
+         .type = CountRange{1, 64},
+         .field = &RenderSettings::ssaa,
+         .unit = "drawn pixels along each side of a pixel",
+         .scope = KnobScope::raster,
+         .what = "draw N x N pixels for each of the picture, and filter them (--filter)",
+         .buys = "time and memory are quadratic in it",
+         .costs = "aliasing of shading, highlights and edges",
+         .metric = KnobMetric::relmse,
+         .tried = {"1", "2", "4"}},
+    Knob{.name = "filter",
+         .type = NameChoice{{"box", "tent", "gaussian", "blackman-harris"}, 4},
+         .field = &RenderSettings::pixel_filter,
+         .unit = "",
+         .scope = KnobScope::raster,
+         .what = "how drawn pixels are weighed into one",
+         .buys = "little: a wider filter reads more",
+         .costs = "box: aliasing above the pixels' frequency; the others: sharpness below it",
          .metric = KnobMetric::relmse},
     Knob{.name = "mipmaps",
          .type = Switch{},
@@ -64,6 +112,55 @@ constexpr std::array kKnobs = {
          .what = "read textures at the level that fits the pixel; off reads level 0",
          .buys = "a third of texture memory",
          .costs = "aliasing where textures are minified",
+         .metric = KnobMetric::relmse},
+    Knob{
+        .name = "texture-filter",
+        .type = NameChoice{{"file", "nearest", "bilinear", "trilinear"}, 4},
+        .field = &RenderSettings::texture_filter,
+        .unit = "",
+        .scope = KnobScope::raster,
+        .what = "filter of textures: each as the file says, or all alike (nearest and bilinear take the nearest level)",
+        .buys = "reads of other texels and levels",
+        .costs = "blocks, or seams between levels; another look than the file's",
+        .metric = KnobMetric::relmse},
+    Knob{.name = "anisotropy",
+         .type = CountChoice{{1, 2, 4, 8, 16}, 5},
+         .field = &RenderSettings::anisotropy,
+         .unit = "probes",
+         .scope = KnobScope::raster,
+         .what = "most probes along a pixel's footprint in a texture",
+         .buys = "time of textures seen at a slant is linear in it",
+         .costs = "they blur along the short side",
+         .metric = KnobMetric::relmse},
+    Knob{.name = "point-size",
+         .type = CountRange{1, 64},
+         .field = &RenderSettings::point_size,
+         .unit = "pixels",
+         .scope = KnobScope::raster,
+         .what = "side of the squares that points are drawn as",
+         .buys = "nothing: a matter of look",
+         .costs = "nothing",
+         .metric = KnobMetric::relmse,
+         .tried = {"1"}},
+    Knob{.name = "line-width",
+         .type = CountRange{1, 64},
+         .field = &RenderSettings::line_width,
+         .unit = "pixels",
+         .scope = KnobScope::raster,
+         .what = "width of lines",
+         .buys = "nothing: a matter of look",
+         .costs = "nothing",
+         .metric = KnobMetric::relmse,
+         .tried = {"1"}},
+    Knob{.name = "depth",
+         .type = NameChoice{{"reversed-32", "forward-32", "forward-24", "forward-16"}, 4},
+         .field = &RenderSettings::depth,
+         .unit = "",
+         .scope = KnobScope::raster,
+         .what =
+             "how distances are compared: reversed in 32-bit float with infinite far, or forward in 32, 24 or 16 bits",
+         .buys = "half the memory of depth, in 16 bits",
+         .costs = "surfaces that lie near one another fight where they are far away",
          .metric = KnobMetric::relmse},
     Knob{.name = "threads",
          .type = CountRange{0, 1024},
@@ -94,8 +191,20 @@ bool is_allowed(const Knob& knob, std::uint64_t value)
                                      return std::find(choice.values.begin(), choice.values.begin() + choice.count,
                                                       value) != choice.values.begin() + choice.count;
                                  },
+                                 [&](const NameChoice& choice) { return value < choice.count; },
                                  [&](const Switch&) { return value <= 1; }},
                       knob.type);
+}
+
+template <class Choice>
+std::string listed(const Choice& choice)
+{
+    std::string values;
+    for (std::size_t i = 0; i < choice.count; ++i) {
+        const char* const between = i == 0 ? "" : i + 1 == choice.count ? " or " : ", ";
+        values += fmt::format("{}{}", between, choice.values[i]);
+    }
+    return values;
 }
 
 Error refused(const Knob& knob, std::string_view text)
@@ -110,6 +219,12 @@ std::optional<std::uint64_t> parse(const Knob& knob, std::string_view text)
         if (text == "on" || text == "true" || text == "1") return 1;
         if (text == "off" || text == "false" || text == "0") return 0;
         return std::nullopt;
+    }
+    if (const auto* const choice = std::get_if<NameChoice>(&knob.type)) {
+        const auto end = choice->values.begin() + choice->count;
+        const auto found = std::find(choice->values.begin(), end, text);
+        if (found == end) return std::nullopt;
+        return static_cast<std::uint64_t>(found - choice->values.begin());
     }
     std::uint64_t value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -143,16 +258,8 @@ std::string range_of(const Knob& knob)
     const std::string unit = knob.unit.empty() ? "" : fmt::format(" {}", knob.unit);
     return std::visit(
         Overloaded{[&](const CountRange& range) { return fmt::format("{} to {}{}", range.min, range.max, unit); },
-                   [&](const CountChoice& choice) {
-                       std::string values;
-                       for (std::size_t i = 0; i < choice.count; ++i)
-                           values += fmt::format("{}{}",
-                                                 i == 0                  ? ""
-                                                 : i + 1 == choice.count ? " or "
-                                                                         : ", ",
-                                                 choice.values[i]);
-                       return values + unit;
-                   },
+                   [&](const CountChoice& choice) { return listed(choice) + unit; },
+                   [](const NameChoice& choice) { return listed(choice); },
                    [](const Switch&) { return std::string("on or off"); }},
         knob.type);
 }
@@ -162,6 +269,8 @@ std::string knob_value(const RenderSettings& settings, std::string_view name)
     const Knob& row = knob(name);
     const std::uint64_t value = read(settings, row);
     if (std::holds_alternative<Switch>(row.type)) return value ? "on" : "off";
+    if (const auto* const choice = std::get_if<NameChoice>(&row.type))
+        return std::string(value < choice->count ? choice->values[value] : "none of its values");
     return fmt::format("{}", static_cast<std::int64_t>(value));
 }
 

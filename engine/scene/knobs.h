@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -25,7 +26,12 @@ struct CountRange {
 };
 /// One of a few whole numbers.
 struct CountChoice {
-    std::array<std::uint64_t, 4> values{};
+    std::array<std::uint64_t, 5> values{};
+    std::size_t count = 0;
+};
+/// One of a few names; the value is the index.
+struct NameChoice {
+    std::array<std::string_view, 4> values{};
     std::size_t count = 0;
 };
 /// "on" or "off".
@@ -35,9 +41,11 @@ struct Switch {};
 /// derive from its row; the standard value is that of a default RenderSettings.
 struct Knob {
     std::string_view name;  ///< as on the command line, without dashes: "max-depth"
-    std::variant<CountRange, CountChoice, Switch> type;
+    std::variant<CountRange, CountChoice, NameChoice, Switch> type;
     std::variant<std::uint64_t RenderSettings::*, int RenderSettings::*, unsigned RenderSettings::*,
-                 bool RenderSettings::*>
+                 bool RenderSettings::*, PixelFilter RenderSettings::*, TextureFilter RenderSettings::*,
+                 DepthKind RenderSettings::*, Shadows RenderSettings::*, Transparency RenderSettings::*,
+                 LightSelection RenderSettings::*, Sequence RenderSettings::*>
         field;
     std::string_view unit;  ///< "samples/pixel"; empty for a switch
     KnobScope scope = KnobScope::path;
@@ -45,6 +53,7 @@ struct Knob {
     std::string_view buys;   ///< what a cheaper value saves
     std::string_view costs;  ///< what error it brings
     KnobMetric metric = KnobMetric::none;
+    std::array<std::string_view, 4> tried{};  ///< what sweeps try; all empty: as the type suggests
 };
 
 std::span<const Knob> knobs();
@@ -53,11 +62,12 @@ const Knob* find_knob(std::string_view name);
 /// The row of that name. Error(input) listing the names when there is none.
 const Knob& knob(std::string_view name);
 
-/// Its possible values in words: "1 to 1073741824 samples/pixel", "1 or 4 samples/pixel", "on or off".
+/// Its possible values in words: "1 to 1073741824 samples/pixel", "1, 2 or 4 samples/pixel", "on or off".
 std::string range_of(const Knob& knob);
 /// The value of a knob as set_knob reads it.
 std::string knob_value(const RenderSettings& settings, std::string_view name);
-/// Sets a knob from text: a whole number or on/off. Error(input) with the range when the text is not one of its values.
+/// Sets a knob from text: a whole number, a name or on/off. Error(input) with the range when the text is not one of its
+/// values.
 void set_knob(RenderSettings& settings, std::string_view name, std::string_view text);
 /// Every knob of `settings` in its range, whoever set it. Error(input) otherwise.
 void check_knobs(const RenderSettings& settings);

@@ -31,6 +31,9 @@ enum class Shadows { none, map };
 /// How rasterizers put together what is not opaque.
 enum class Transparency { sorted, weighted, exact };
 
+/// How next-event estimation chooses among emitters: by what each could send to the point, or by power alone.
+enum class LightSelection { tree, power };
+
 /// Where the random numbers of paths come from (docs/equations.md, MC-8).
 enum class Sequence { pcg, sobol };
 /// "sobol", as --sampler takes it.
@@ -58,6 +61,7 @@ struct RenderSettings {
     std::uint64_t seed = 0;
     int max_depth = 8;  ///< most segments of a path from camera to light (1: emission alone)
     bool russian_roulette = true;
+    LightSelection light_selection = LightSelection::tree;
     Sequence sampler = Sequence::pcg;
     bool glass_shadows = false;  ///< shadow rays go straight through surfaces that transmit (SH-70)
     Shard shard;                 ///< path tracers: the rows that the film has

@@ -30,6 +30,9 @@ layout(constant_id = kSpecSky) const bool kSky = true;
 layout(constant_id = kSpecSkyMap) const bool kSkyMap = true;
 layout(constant_id = kSpecThinLens) const bool kThinLens = true;
 layout(constant_id = kSpecOrthographic) const bool kOrthographic = true;
+layout(constant_id = kSpecEquirectangular) const bool kEquirectangular = true;
+layout(constant_id = kSpecSobol) const bool kSobol = false;
+layout(constant_id = kSpecGlassShadows) const bool kGlassShadows = false;
 layout(constant_id = kSpecSpecularGlossiness) const bool kSpecularGlossiness = true;
 layout(constant_id = kSpecSpecular) const bool kSpecular = true;
 layout(constant_id = kSpecClearcoat) const bool kClearcoat = true;
@@ -43,6 +46,7 @@ layout(constant_id = kSpecDiffuseTransmission) const bool kDiffuseTransmission =
 layout(constant_id = kSpecLayerTextures) const bool kLayerTextures = true;
 const bool kAnyLayer = kSpecular || kClearcoat || kSheen || kTransmission || kIridescence || kAnisotropy || kDiffuseTransmission;
 
+layout(constant_id = kSpecLightTree) const bool kLightTree = true;
 layout(constant_id = kSpecSubgroupLog2) const uint kSubgroupLog2 = 3u;
 
 #endif

@@ -4,6 +4,7 @@
 #include "shaders/lib/onb.glsl"
 #include "shaders/lib/sampling.glsl"
 #include "shaders/path/environment.glsl"
+#include "shaders/path/light_tree.glsl"
 #include "shaders/path/surface.glsl"
 #include "shaders/shared/rng.h"
 
@@ -146,12 +147,22 @@ LightSample sample_sphere_light(PrimitiveData data, uint primitive, vec3 from, v
 
 LightSample sample_emitter(vec3 from, uint pick, uint threshold, vec2 u)
 {
-    uint index;
-    uint low;
-    umulExtended(pick, frame.emitter_count, index, low);
-    uvec4 entry = imageLoad(emitters, int(index));
-    uint primitive = unit_float(threshold) < uintBitsToFloat(entry.x) ? entry.z : entry.y;
-    PrimitiveData data = load_primitive(primitive);
+    uint primitive;
+    PrimitiveData data;
+    if (kLightTree) {
+        float chance;
+        uint leaf = choose_leaf(from, pick, threshold, chance);
+        primitive = imageLoad(emitters, int(leaf)).x;
+        data = load_primitive(primitive);
+        data.light_density = chance * per_area(data);
+    } else {
+        uint index;
+        uint low;
+        umulExtended(pick, frame.emitter_count, index, low);
+        uvec4 entry = imageLoad(emitters, int(index));
+        primitive = unit_float(threshold) < uintBitsToFloat(entry.x) ? entry.z : entry.y;
+        data = load_primitive(primitive);
+    }
     if (kSpheres && (data.flags & kPrimitiveSphere) != 0u) return sample_sphere_light(data, primitive, from, u);
     return sample_triangle_light(data, primitive, from, u);
 }
@@ -193,9 +204,15 @@ LightSample sample_light(vec3 from, vec3 n, uvec4 bits)
 float emitter_pdf(uint primitive, Surface s, vec3 from, vec3 wi, float distance)
 {
     if (!samples_emitters() || !(s.light_density > 0.0)) return 0.0;
-    if (kSpheres && (s.flags & kPrimitiveSphere) != 0u) return sphere_light_pdf(load_primitive(primitive), from);
+    float density = s.light_density;
+    if (kLightTree || kSpheres) {
+        PrimitiveData data = load_primitive(primitive);
+        if (kLightTree) data.light_density = leaf_chance(from, uint(data.light_density) - 1u) * per_area(data);
+        density = data.light_density;
+        if (kSpheres && (s.flags & kPrimitiveSphere) != 0u) return sphere_light_pdf(data, from);
+    }
     float cosine = abs(dot(s.ng, wi));
-    return s.light_density * distance / max(cosine, 1e-38) * distance / float(frame.strategy_count);
+    return density * distance / max(cosine, 1e-38) * distance / float(frame.strategy_count);
 }
 
 #endif

@@ -26,7 +26,8 @@ struct PrimitiveData {
     vec3 p1;
     vec3 p2;
     uint flags;
-    float light_density;  // triangles: chance to be the sampled emitter per area; spheres: chance
+    // Of an emitter, else 0. Alias table: the chance to be drawn, of triangles over their area. Tree: leaf + 1.
+    float light_density;
     uint object;          // draw or sphere index + 1
 };
 

@@ -83,6 +83,11 @@ ETALON_CONSTANT uint kSpecAnisotropy = 42u;
 ETALON_CONSTANT uint kSpecDispersion = 43u;
 ETALON_CONSTANT uint kSpecDiffuseTransmission = 44u;
 ETALON_CONSTANT uint kSpecLayerTextures = 45u;
+ETALON_CONSTANT uint kSpecEquirectangular = 46u;
+ETALON_CONSTANT uint kSpecSobol = 47u;         // random numbers of MC-8
+ETALON_CONSTANT uint kSpecGlassShadows = 48u;  // shadow rays pass smooth glass (SH-70)
+
+ETALON_CONSTANT uint kSpecLightTree = 60u;  // emitters are chosen by a tree, else by an alias table
 
 ETALON_CONSTANT uint kPathWorkgroup = 64u;
 
@@ -92,6 +97,7 @@ ETALON_CONSTANT uint kPrimitiveCulled = 1u << 24u;     // seen and hit from the 
 ETALON_CONSTANT uint kPrimitiveAlpha = 1u << 25u;      // masked or blended
 ETALON_CONSTANT uint kPrimitiveSphere = 1u << 26u;     // p0 = centre, p1.x = radius
 ETALON_CONSTANT uint kPrimitiveEmitsBack = 1u << 27u;  // emits to both sides
+ETALON_CONSTANT uint kPrimitiveGlass = 1u << 28u;      // smooth glass (SH-70)
 ETALON_CONSTANT uint kNoPrimitive = 0xffffffffu;
 ETALON_CONSTANT uint kLostPrimitive = 0xfffffffeu;  // as a hit: the traversal gave the ray up
 
@@ -151,6 +157,7 @@ struct PathFrame {
     uint sky_height;
     uint cells_x;  // cells of its alias table; 0: black
     uint cells_y;
+    uint lens_blades;  // corners of the aperture; under 3: a disk
 };
 
 // What changes from dispatch to dispatch.

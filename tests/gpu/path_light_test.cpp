@@ -185,5 +185,45 @@ TEST_F(PathPicture, SH23_backgrounds)
     EXPECT_EQ(blue.alpha[15], 1);
 }
 
+// Lamps of both kinds over a floor, some of them turned away, small and far from one another.
+Scene many_lamps()
+{
+    SceneBuilder b("many lamps");
+    b.show("floor", make_rectangle(dvec3(0), dvec3(12, 0, 0), dvec3(0, 0, -12)), b.lambert("grey", dvec3(0.5)));
+    Material glow;
+    glow.model = BsdfModel::lambert;
+    glow.base_color = dvec4(0, 0, 0, 1);
+    for (int i = 0; i < 40; ++i) {
+        glow.emission = dvec3(20 + 10 * (i % 5), 30, 40);
+        glow.double_sided = i % 3 == 0;
+        const dvec3 at(-5 + i % 8 * 1.4, 0.5 + i % 3, -5 + i / 8 * 2.2);
+        const dvec3 along(0.1, 0, 0), across(0, i % 4 == 0 ? 0.1 : 0, i % 2 == 0 ? 0.1 : -0.1);
+        b.show("lamp", make_rectangle(at, along, across), b.material(glow));
+        if (i % 10 == 0) b.sphere("bulb", at + dvec3(0.5, 0.2, 0), 0.05, b.material(glow));
+    }
+    b.camera("below them", 40, dvec3(0, 0.45, 3),
+             dvec3(0, 0, 2.2));  // sees none itself: their edges are noise of another kind
+    return std::move(b).finish();
+}
+
+TEST_F(PathPicture, MC9_lights_chosen_by_the_tree_give_the_same_picture_with_less_noise)
+{
+    const Scene scene = many_lamps();
+    RenderSettings how = settings(256);
+    how.light_selection = LightSelection::tree;
+    const Film tree = render(scene, how);
+    how.light_selection = LightSelection::power;
+    how.seed = 1;
+    const Film power = render(scene, how);
+    expect_equal(measure(tree), measure(power), "whole picture");
+    for (int quarter = 0; quarter < 4; ++quarter) {
+        const auto inside = [&](int x, int y) {
+            return (x < tree.width / 2) == (quarter % 2 == 0) && (y < tree.height / 2) == (quarter / 2 == 0);
+        };
+        expect_equal(measure(tree, inside), measure(power, inside), "a quarter");
+    }
+    EXPECT_LT(measure(tree).error.y, 0.7 * measure(power).error.y);
+}
+
 }  // namespace
 }  // namespace etalon::test
