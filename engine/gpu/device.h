@@ -173,7 +173,8 @@ class Device {
     std::unique_ptr<GlDevice> gl_;
 };
 
-/// Versions of what stands between us and the device, for `info`: loader, layers and drivers ("name version" each).
+/// Versions of what stands between us and the device, for `info`: loader and layers ("name version"
+/// each); empty without a loader.
 std::vector<std::string> vulkan_versions();
 
 }  // namespace etalon::gpu

@@ -143,13 +143,15 @@ void GlCommands::copy(const Image& from, GlBuffer& to, std::uint32_t mip, std::u
     });
 }
 
+// Vertices and indices stay bound when the pipeline changes, as in Vulkan; OpenGL keeps them with the pipeline's vertex
+// array, so they go there before each draw that needs them.
 void GlCommands::bind_vertices(std::uint32_t stream, GlBuffer& buffer, std::uint64_t offset)
 {
     record([stream, &buffer, offset](Replay& replay) {
         buffer.send();
-        replay.gl.VertexArrayVertexBuffer(replay.pipeline->vertices(), stream, buffer.name(),
-                                          static_cast<GLintptr>(offset),
-                                          static_cast<GLsizei>(replay.pipeline->stride(stream)));
+        if (replay.streams.size() <= stream) replay.streams.resize(stream + 1);
+        replay.streams[stream] = {buffer.name(), offset};
+        replay.changed = true;
     });
 }
 
@@ -158,8 +160,8 @@ void GlCommands::bind_indices(GlBuffer& buffer, VkIndexType type, std::uint64_t 
     record([&buffer, type, offset](Replay& replay) {
         buffer.send();
         replay.index_type = type == VK_INDEX_TYPE_UINT16 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT;
-        replay.index_offset = offset;
-        replay.gl.VertexArrayElementBuffer(replay.pipeline->vertices(), buffer.name());
+        replay.indices = {buffer.name(), offset};
+        replay.changed = true;
     });
 }
 
@@ -180,7 +182,7 @@ void GlCommands::draw_indexed(std::uint32_t indices, std::uint32_t instances, st
         const std::uint64_t size = replay.index_type == GL_UNSIGNED_SHORT ? 2 : 4;
         replay.gl.DrawElementsInstancedBaseVertexBaseInstance(
             replay.pipeline->topology(), static_cast<GLsizei>(indices), replay.index_type,
-            at(replay.index_offset + first_index * size), static_cast<GLsizei>(instances), vertex_offset, 0);
+            at(replay.indices.offset + first_index * size), static_cast<GLsizei>(instances), vertex_offset, 0);
     });
 }
 

@@ -21,6 +21,7 @@ class GlPipeline {
 
     GLuint vertices() const { return vertices_.get(); }
     GLenum topology() const { return topology_; }
+    std::uint32_t streams() const { return static_cast<std::uint32_t>(strides_.size()); }
     std::uint32_t stride(std::uint32_t stream) const { return strides_[stream]; }
     const std::vector<GlResource>& resources() const { return resources_; }
     /// Of resources()[i]; null where the shader reads the bytes as they are.

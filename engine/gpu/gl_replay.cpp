@@ -19,7 +19,19 @@ void GlCommands::Replay::prepare()
         if (!resource.writes || resource.kind != GlResourceKind::storage_buffer) continue;
         wrote(*find(resource.set, resource.binding).buffer);
     }
+    if (changed) bind_vertices();
     changed = false;
+}
+
+void GlCommands::Replay::bind_vertices()
+{
+    for (std::uint32_t i = 0; i < pipeline->streams(); ++i) {
+        assume(i < streams.size() && streams[i].buffer != 0);
+        gl.VertexArrayVertexBuffer(pipeline->vertices(), i, streams[i].buffer, static_cast<GLintptr>(streams[i].offset),
+                                   static_cast<GLsizei>(pipeline->stride(i)));
+    }
+    if (pipeline->streams() > 0 && indices.buffer != 0)
+        gl.VertexArrayElementBuffer(pipeline->vertices(), indices.buffer);
 }
 
 void GlCommands::Replay::wrote(GlBuffer& buffer)
@@ -67,8 +79,8 @@ void GlCommands::Replay::bind_buffer(const GlResource& resource, const GlBound& 
     if (bound.offset != 0 || bound.size != bound.buffer->size())
         throw Error(Blame::machine, "the OpenGL backend cannot bind a part of a buffer whose layout is not std430",
                     "render with --backend vulkan");
-    gl.BindBufferRange(target, resource.unit, bound.buffer->laid_out(*layout), 0,
-                       static_cast<GLsizeiptr>(bound.buffer->laid_out_size(*layout)));
+    const GlBuffer::Laid laid = bound.buffer->laid_out(*layout);
+    gl.BindBufferRange(target, resource.unit, laid.name, 0, static_cast<GLsizeiptr>(laid.size));
 }
 
 void GlCommands::Replay::bind_images(const GlResource& resource, const GlBound& bound)

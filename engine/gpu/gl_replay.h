@@ -12,11 +12,16 @@ struct GlCommands::Replay {
     GLuint push_buffer = 0;
     const GlPipeline* pipeline = nullptr;
     std::array<const GlBindings*, 4> sets{};
-    bool changed = true;  ///< pipeline or sets since the last draw
+    bool changed = true;  ///< pipeline, sets or vertices since the last draw
     std::uint64_t push_offset = 0;
     std::uint64_t push_size = 0;
+    struct Stream {
+        GLuint buffer = 0;
+        std::uint64_t offset = 0;
+    };
+    std::vector<Stream> streams;
+    Stream indices;
     GLenum index_type = GL_UNSIGNED_INT;
-    std::uint64_t index_offset = 0;
     gl::Framebuffer framebuffer;       ///< of the rendering that is under way
     std::function<void(Replay&)> end;  ///< resolves its targets
     std::vector<GlBuffer*> written;    ///< to be fetched for the host
@@ -26,6 +31,7 @@ struct GlCommands::Replay {
     void wrote(GlBuffer& buffer);
 
  private:
+    void bind_vertices();
     void bind(const GlResource& resource, const BlockLayout* layout);
     void bind_buffer(const GlResource& resource, const GlBound& bound, const BlockLayout* layout);
     void bind_images(const GlResource& resource, const GlBound& bound);

@@ -83,11 +83,11 @@ void GlBuffer::fetch()
     if (kind_ == MemoryKind::readback) read(host_, 0);
 }
 
-GLuint GlBuffer::laid_out(const BlockLayout& layout)
+GlBuffer::Laid GlBuffer::laid_out(const BlockLayout& layout)
 {
     auto known = std::find_if(relaid_.begin(), relaid_.end(), [&](const Relaid& r) { return r.layout == &layout; });
     if (known == relaid_.end()) known = relaid_.insert(known, Relaid{.layout = &layout, .buffer = {}});
-    if (known->version == version_) return known->buffer.get();
+    if (known->version == version_) return {known->buffer.get(), known->size};
     std::vector<std::byte> bytes(size_);
     if (kind_ == MemoryKind::upload)
         std::copy(host_.begin(), host_.end(), bytes.begin());
@@ -98,15 +98,7 @@ GLuint GlBuffer::laid_out(const BlockLayout& layout)
     known->buffer = make_gl_buffer(device_, laid);
     known->size = laid.size();
     known->version = version_;
-    return known->buffer.get();
-}
-
-std::uint64_t GlBuffer::laid_out_size(const BlockLayout& layout) const
-{
-    const auto known =
-        std::find_if(relaid_.begin(), relaid_.end(), [&](const Relaid& r) { return r.layout == &layout; });
-    assume(known != relaid_.end());
-    return known->size;
+    return {known->buffer.get(), known->size};
 }
 
 GlImage::GlImage(GlDevice& device, const ImageSpec& spec)

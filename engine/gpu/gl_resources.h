@@ -48,8 +48,11 @@ class GlBuffer {
     bool is_readback() const { return kind_ == MemoryKind::readback; }
 
     /// Its bytes by another layout; made anew when they have changed. `layout` is interned.
-    GLuint laid_out(const BlockLayout& layout);
-    std::uint64_t laid_out_size(const BlockLayout& layout) const;
+    struct Laid {
+        GLuint name = 0;
+        std::uint64_t size = 0;
+    };
+    Laid laid_out(const BlockLayout& layout);
 
  private:
     struct Relaid {

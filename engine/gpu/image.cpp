@@ -146,7 +146,9 @@ void Image::make_view(Device& device)
 
 VkImageAspectFlags Image::aspect() const
 {
-    return spec_.format == VK_FORMAT_D32_SFLOAT ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
+    const bool depth = spec_.format == VK_FORMAT_D32_SFLOAT || spec_.format == VK_FORMAT_X8_D24_UNORM_PACK32 ||
+                       spec_.format == VK_FORMAT_D16_UNORM;
+    return depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
 }
 
 void upload(Device& device, Image& image, std::span<const ImagePart> parts, ImageUse after)

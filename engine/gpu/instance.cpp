@@ -12,11 +12,16 @@ namespace {
 
 constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
 
-void load_loader()
+bool has_loader()
 {
     // volk keeps the loader's functions in globals: filled once, only read after.
     static const VkResult loaded = volkInitialize();
-    if (loaded != VK_SUCCESS)
+    return loaded == VK_SUCCESS;
+}
+
+void load_loader()
+{
+    if (!has_loader())
         throw Error(Blame::machine, "this machine has no Vulkan loader (libvulkan.so.1)",
                     "install a Vulkan loader and driver; on Debian: apt install libvulkan1 mesa-vulkan-drivers");
 }
@@ -215,8 +220,8 @@ std::vector<VkPhysicalDevice> Instance::physical_devices() const
 
 std::vector<std::string> vulkan_versions()
 {
-    load_loader();
     std::vector<std::string> versions;
+    if (!has_loader()) return versions;
     std::uint32_t loader = VK_API_VERSION_1_0;
     if (vkEnumerateInstanceVersion != nullptr) check(vkEnumerateInstanceVersion(&loader), "vkEnumerateInstanceVersion");
     versions.push_back("Vulkan loader " + version_text(loader));
