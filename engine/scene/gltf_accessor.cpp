@@ -82,6 +82,16 @@ struct Elements {
     std::size_t stride = 0;
 };
 
+// Without a bufferView accessors are zero (glTF 2.0 §3.6.2.1), and so they are here where its buffer has no data:
+// preflight has warned of it.
+bool has_data(const Source& source, int view_index)
+{
+    if (view_index < 0) return false;
+    if (source.decoded.views.contains(static_cast<std::size_t>(view_index))) return true;
+    const auto& view = source.model.bufferViews.at(static_cast<std::size_t>(view_index));
+    return !source.file.buffers.at(static_cast<std::size_t>(view.buffer)).bytes.empty();
+}
+
 Elements elements(const Source& source, int view_index, std::size_t offset, std::size_t packed)
 {
     const auto& view = source.model.bufferViews.at(static_cast<std::size_t>(view_index));
@@ -129,7 +139,7 @@ void for_each_element(const Source& source, const tinygltf::Accessor& accessor, 
     const std::size_t count = subset ? subset->size() : accessor.count;
     const auto index = static_cast<std::size_t>(&accessor - source.model.accessors.data());
     const auto decoded = source.decoded.accessors.find(index);
-    if (accessor.bufferView >= 0 || decoded != source.decoded.accessors.end()) {
+    if (decoded != source.decoded.accessors.end() || has_data(source, accessor.bufferView)) {
         const Elements from = decoded != source.decoded.accessors.end()
                                   ? Elements{decoded->second, size}
                                   : elements(source, accessor.bufferView, accessor.byteOffset, size);

@@ -144,10 +144,12 @@ CheckedGltf preflight(std::span<const std::byte> bytes, const std::filesystem::p
 
     CheckedGltf out;
     out.warnings = parts.warnings;
+    set_aside_unknown(document, out.warnings);
     out.buffers = read_buffers(document, parts, text, folder, limits);
     std::vector<View> views = read_views(document, out.buffers);
     check_compressed_views(document, views, out.buffers);
     check_accessors(document, views, out.buffers, limits);
+    warn_of_missing_data(document, views, out.buffers, out.warnings);
     check_counts(document, limits);
     out.images = read_images(document, text, views, out.buffers);
     out.broken_rules = validate(document, views, out.buffers);

@@ -131,6 +131,40 @@ class DatalessElements {
 
 }  // namespace
 
+void set_aside_unknown(json& document, std::vector<std::string>& warnings)
+{
+    if (!document.contains("accessors")) return;
+    const std::vector<bool> used = used_accessors(document);
+    json& accessors = document["accessors"];
+    for (std::size_t i = 0; i < accessors.size(); ++i) {
+        const json* type = member(accessors[i], "type");
+        if (used[i] || type == nullptr || !type->is_string() ||
+            element_size(type->get_ref<const std::string&>(), 1) > 0)
+            continue;
+        warnings.push_back(
+            fmt::format("/accessors/{}/type: {} is not known [VALUE_NOT_IN_LIST]: nothing uses it, and "
+                        "it is ignored",
+                        i, brief(*type)));
+        accessors[i] = {{"componentType", Unsigned{5126}}, {"type", "SCALAR"}, {"count", Unsigned{1}}};
+    }
+}
+
+void warn_of_missing_data(const json& document, std::span<const View> views, std::span<const GltfBuffer> buffers,
+                          std::vector<std::string>& warnings)
+{
+    std::vector<bool> wanted(buffers.size());
+    for_each(document, "/accessors/*/bufferView", [&](const json& index, const Place&) {
+        const View& view = views[index.get<Unsigned>()];
+        if (buffers[view.buffer].bytes.empty() && !view.is_decoded) wanted[view.buffer] = true;
+    });
+    for (std::size_t i = 0; i < wanted.size(); ++i)
+        if (wanted[i])
+            warnings.push_back(
+                fmt::format("/buffers/{}: has no data in this file [BUFFER_MISSING_GLB_DATA]: what "
+                            "accessors read of it is zero",
+                            i));
+}
+
 void check_accessors(const json& document, std::span<const View> views, std::span<const GltfBuffer> buffers,
                      const Limits& limits)
 {

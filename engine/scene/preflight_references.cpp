@@ -91,6 +91,15 @@ void check_collections(const json& document)
     }
 }
 
+std::vector<bool> used_accessors(const json& document)
+{
+    std::vector<bool> out(collection(document, "/accessors").size());
+    for (const Reference& row : kReferences)
+        if (row.into == "/accessors")
+            for_each(document, row.from, [&](const json& value, const Place&) { out[value.get<Unsigned>()] = true; });
+    return out;
+}
+
 void check_references(const json& document)
 {
     for (const Reference& row : kReferences) {

@@ -173,6 +173,37 @@ TEST(BrokenRules, a_light_of_unknown_type_is_ignored_with_a_warning)
     EXPECT_THAT(scene.warnings, testing::ElementsAre(HasSubstr("/extensions/KHR_lights_punctual/lights/0/type")));
 }
 
+TEST(BrokenRules, an_accessor_of_unknown_type_is_ignored_where_nothing_uses_it)
+{
+    GltfWriter file = test::triangle_file();
+    file.add_accessor(0, test::kFloat, "VEC5", 3);
+    const Scene scene = file.load();
+    EXPECT_THAT(scene.warnings, testing::ElementsAre(testing::AllOf(HasSubstr("/type: \"VEC5\" is not known"),
+                                                                    HasSubstr("[VALUE_NOT_IN_LIST]"))));
+    EXPECT_EQ(scene.meshes.at(0).primitives.at(0).positions.size(), 3u);
+    EXPECT_THAT(message_of([] {
+                    broken_rules(R"("skins":[{"joints":[0],"inverseBindMatrices":0}],"nodes":[{}],"accessors":[
+                        {"componentType":5126,"type":"VEC5","count":3}])");
+                }),
+                HasSubstr("type \"VEC5\" of component type 5126 does not exist"));
+}
+
+TEST(BrokenRules, what_is_read_of_a_buffer_without_data_is_zero_with_a_warning)
+{
+    const Scene scene = parse_gltf(bytes_of(R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"scene":0,
+        "nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],
+        "buffers":[{"byteLength":48}],"bufferViews":[{"buffer":0,"byteLength":36},
+        {"buffer":0,"byteOffset":36,"byteLength":12}],"accessors":[
+        {"bufferView":0,"componentType":5126,"type":"VEC3","count":3,"min":[0,0,0],"max":[0,0,0]},
+        {"bufferView":1,"componentType":5125,"type":"SCALAR","count":3}]})"),
+                                   "", "test");
+    EXPECT_THAT(scene.warnings,
+                testing::ElementsAre(testing::AllOf(testing::StartsWith("/buffers/0: has no data in this file"),
+                                                    HasSubstr("[BUFFER_MISSING_GLB_DATA]"))));
+    EXPECT_THAT(scene.meshes.at(0).primitives.at(0).positions, testing::Each(vec3(0)));
+    EXPECT_THAT(broken_rules(R"("buffers":[{"byteLength":48}])"), IsEmpty());
+}
+
 TEST(BrokenRules, are_errors_when_strict)
 {
     GltfWriter file = test::triangle_file();
