@@ -12,3 +12,10 @@ extern "C" const char* __lsan_default_suppressions()
 {
     return "leak:libVkLayer_khronos_validation.so\n";
 }
+
+// Of a library that was loaded later and has threads (OpenImageIO) LSan follows thread-local storage that is gone by then,
+// and dies of it.
+extern "C" const char* __asan_default_options()
+{
+    return "intercept_tls_get_addr=0";
+}
