@@ -165,18 +165,23 @@ dvec3 mean_of(const Film& film)
 RasterBudget raster_budget(const PosedScene& posed, const RenderSettings& settings, const RasterPrecision& precision)
 {
     double alpha = 1, shares = 0;
-    bool textured = false, transmits = false;
+    bool textured = false, transmits = false, glossy = false;
     bool lit = !posed.lights.empty();
     const auto add = [&](const Material& material) {
         alpha = std::min(alpha, sharpest_alpha(material));
         lit = lit || material.emission != dvec3(0);
         shares = std::max(shares, share_error(material));
+        const bool plain = material.model == BsdfModel::unlit || material.model == BsdfModel::lambert;
+        glossy = glossy || !(plain || material.model == BsdfModel::mirror);
         textured = textured || is_textured(material);
         transmits = transmits || (material.layers && material.layers->transmission > 0);
     };
     for (const Draw& draw : posed.draws) add(posed.material(draw));
     for (const PosedSphere& sphere : posed.spheres) add(posed.materials()[sphere.material]);
     if (!lit || settings.shading == Shading::blinn_phong) shares = 0;
+    // E and w̄ of (SH-34) by two quadratures: their F0 + (F90 - F0) w̄ times E differs by at most so much.
+    const bool shines = !posed.environment.is_black() && settings.shading != Shading::blinn_phong;
+    if (shines && glossy) shares += 2.5e-3;
     RasterBudget budget{.relative = kRounding + 2 * kTurn / alpha + shares};
     // Where a transmitting surface looks behind: a film position off by ten roundings of its size, times a difference
     // of neighbours of at most 1.

@@ -189,17 +189,12 @@ RadianceMap area_average(const Environment& environment, int width, int height)
     return out;
 }
 
-std::array<double, 9> spherical_harmonics(const dvec3& n)
+// Lagarde & de Rousiers 2014, "Moving Frostbite to PBR", §4.9.3
+dvec3 dominant_reflection(const dvec3& wo, const dvec3& n, double roughness)
 {
-    return {0.5 * std::sqrt(1 / kPi),
-            std::sqrt(3 / (4 * kPi)) * n.y,
-            std::sqrt(3 / (4 * kPi)) * n.z,
-            std::sqrt(3 / (4 * kPi)) * n.x,
-            std::sqrt(15 / (4 * kPi)) * n.x * n.y,
-            std::sqrt(15 / (4 * kPi)) * n.y * n.z,
-            std::sqrt(5 / (16 * kPi)) * (3 * n.z * n.z - 1),
-            std::sqrt(15 / (4 * kPi)) * n.x * n.z,
-            std::sqrt(15 / (16 * kPi)) * (n.x * n.x - n.y * n.y)};
+    const dvec3 mirror = 2 * dot(wo, n) * n - wo;
+    const double smooth = 1 - std::min(roughness * roughness, 1.0);
+    return n + smooth * (std::sqrt(smooth) + 1 - smooth) * (mirror - n);
 }
 
 namespace {
@@ -244,6 +239,19 @@ dvec3 prefilter(const std::vector<Source>& sources, const dvec3& n, double alpha
     return weights > 0 ? sum / weights : dvec3(0);
 }
 
+// (SH-33) E(N)/π, so that constant light gives itself
+dvec3 mean_by_cosine(const std::vector<Source>& sources, const dvec3& n)
+{
+    dvec3 sum(0);
+    double weights = 0;
+    for (const Source& light : sources) {
+        const double weight = std::max(0.0, dot(n, light.direction)) * light.solid_angle;
+        sum += weight * light.radiance;
+        weights += weight;
+    }
+    return sum / weights;
+}
+
 }  // namespace
 
 EnvironmentTables::EnvironmentTables(const Environment& environment, unsigned threads) : rotation_(environment.rotation)
@@ -254,39 +262,33 @@ EnvironmentTables::EnvironmentTables(const Environment& environment, unsigned th
         return;
     }
     const std::vector<Source> sources = sources_of(area_average(environment, 128, 64));
-    constexpr std::array<double, 3> kCosine{kPi, 2 * kPi / 3, kPi / 4};
-    for (const Source& light : sources) {  // (SH-33)
-        const auto y = spherical_harmonics(light.direction);
-        for (std::size_t i = 0; i < 9; ++i)
-            sh_[i] += kCosine[i == 0 ? 0 : i < 4 ? 1 : 2] * y[i] * light.solid_angle * light.radiance;
-    }
     tables_[0] =
         area_average(environment, std::min(environment.map->width, 512), std::min(environment.map->height, 256));
-    for (std::size_t i = 1; i < tables_.size(); ++i) {
-        RadianceMap& table = tables_[i];
+    const auto fill = [&](RadianceMap& table, auto&& value) {
         table.width = 64;
         table.height = 32;
         table.texels.resize(64 * 32);
-        const double roughness = 0.2 * static_cast<double>(i);
         parallel_for(
             32,
             [&](std::size_t y) {
                 for (std::size_t x = 0; x < 64; ++x) {
                     const dvec2 uv((static_cast<double>(x) + 0.5) / 64, (static_cast<double>(y) + 0.5) / 32);
-                    table.texels[y * 64 + x] = prefilter(sources, direction_from_map(uv), roughness * roughness);
+                    table.texels[y * 64 + x] = value(direction_from_map(uv));
                 }
             },
             threads);
+    };
+    for (std::size_t i = 1; i < tables_.size(); ++i) {
+        const double roughness = 0.2 * static_cast<double>(i);
+        fill(tables_[i], [&](const dvec3& n) { return prefilter(sources, n, roughness * roughness); });
     }
+    fill(cosine_, [&](const dvec3& n) { return mean_by_cosine(sources, n); });
 }
 
 dvec3 EnvironmentTables::irradiance(const dvec3& n) const
 {
     if (constant_) return kPi * radiance_;
-    const auto y = spherical_harmonics(turn_y(n, -rotation_));
-    dvec3 sum(0);
-    for (std::size_t i = 0; i < 9; ++i) sum += y[i] * sh_[i];
-    return glm::max(sum, dvec3(0));
+    return kPi * cosine_.bilinear(map_from_direction(turn_y(n, -rotation_)));
 }
 
 dvec3 EnvironmentTables::prefiltered(const dvec3& r, double roughness) const

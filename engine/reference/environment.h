@@ -49,18 +49,18 @@ RadianceMap area_average(const Environment& environment, int width, int height);
 class EnvironmentTables {
  public:
     EnvironmentTables(const Environment& environment, unsigned threads);
-    dvec3 irradiance(const dvec3& n) const;                     ///< E(n), at least 0
+    dvec3 irradiance(const dvec3& n) const;                     ///< E(n)
     dvec3 prefiltered(const dvec3& r, double roughness) const;  ///< P(r, roughness)
 
  private:
     bool constant_ = false;
     dvec3 radiance_{0};
     double rotation_ = 0;
-    std::array<dvec3, 9> sh_{};          ///< of radiance, times the cosine kernel
     std::array<RadianceMap, 6> tables_;  ///< roughness 0, 0.2 … 1
+    RadianceMap cosine_;                 ///< E/π
 };
 
-/// A_l of Ramamoorthi & Hanrahan 2001: π, 2π/3, π/4; and the nine real spherical harmonics at `n`.
-std::array<double, 9> spherical_harmonics(const dvec3& n);
+/// (SH-34) The direction whose P a rough surface shows: between n and the mirror direction. Unit `n`, `wo`.
+dvec3 dominant_reflection(const dvec3& wo, const dvec3& n, double roughness);
 
 }  // namespace etalon::reference

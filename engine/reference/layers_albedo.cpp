@@ -41,6 +41,32 @@ double ggx_share(double cosine, double alpha)
     return sum / (kRings * kTurns);
 }
 
+// Normals by their own distribution, unlike ggx_share: midpoint sums over its quantile and the azimuth.
+double ggx_schlick_share(double cosine, double alpha)
+{
+    constexpr int kRings = 160, kTurns = 64;
+    const double mu = std::clamp(cosine, 1e-9, 1.0);
+    const dvec3 wo(std::sqrt(1 - mu * mu), 0, mu);
+    double share = 0, weighed = 0;
+    for (int i = 0; i < kRings; ++i) {
+        // Normals by their own distribution: tan² θ = α² q/(1 - q), q uniform; here q = s² (3 - 2 s).
+        const double s = (i + 0.5) / kRings, q = s * s * (3 - 2 * s);
+        const double tan2 = alpha * alpha * q / (1 - q);
+        const double h_z = 1 / std::sqrt(1 + tan2), h_r = std::sqrt(tan2) * h_z;
+        for (int j = 0; j < kTurns; ++j) {
+            const double phi = kPi * (j + 0.5) / kTurns;
+            const double o_h = wo.x * h_r * std::cos(phi) + mu * h_z;
+            const double mu_i = 2 * o_h * h_z - mu;
+            if (!(o_h > 0) || !(mu_i > 0)) continue;
+            // D n·h is the density; dwi = 4 wo·h dh.
+            const double w = 6 * s * (1 - s) * ggx_v(mu, mu_i, alpha) * mu_i * 4 * o_h / h_z;
+            share += w;
+            weighed += w * std::pow(1 - o_h, 5);
+        }
+    }
+    return weighed / share;
+}
+
 // ∫ D_s V_s n·wi dwi with both ends of n·wi stretched: Λ has roots of small order there.
 double sheen_share(double cosine, double alpha)
 {

@@ -8,6 +8,8 @@ namespace etalon::reference {
 /// (SH-53) E: the share of the light of a white furnace that one bounce off GGX's microfacets gives back towards
 /// `cosine` (n·wo), F = 1, height-correlated Smith. By quadrature, within 3·10⁻⁴.
 double ggx_share(double cosine, double alpha);
+/// (SH-34) w̄: the mean of Schlick's weight (1 - wo·h)⁵ over the light of E. By quadrature, within 3·10⁻⁴.
+double ggx_schlick_share(double cosine, double alpha);
 /// (SH-61) E_s likewise, of sheen; above 1 at grazing angles of small roughness. By quadrature, within 10⁻³; as at
 /// 10⁻⁴ for cosines below that.
 double sheen_share(double cosine, double alpha);

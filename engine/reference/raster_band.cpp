@@ -3,16 +3,40 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/error.h"
+
 namespace etalon::reference {
 namespace {
 
-constexpr double kUncovered = -1;
+constexpr double kUncovered = -2;  // below every depth
 
-/// Sample positions in a pixel: Vulkan's standard ones (Vulkan 1.3 §25.4), in 1/256 pixel.
+/// Sample positions in a pixel: Vulkan's standard ones (Vulkan 1.3, "Multisampling"), there in 1/16, here in 1/256
+/// pixel.
 std::vector<FixedPoint> sample_positions(int count)
 {
-    if (count == 4) return {{96, 32}, {224, 96}, {32, 160}, {160, 224}};
-    return {{128, 128}};
+    std::vector<FixedPoint> positions;
+    switch (count) {
+        case 1:
+            positions = {{8, 8}};
+            break;
+        case 2:
+            positions = {{12, 12}, {4, 4}};
+            break;
+        case 4:
+            positions = {{6, 2}, {14, 6}, {2, 10}, {10, 14}};
+            break;
+        case 8:
+            positions = {{9, 5}, {7, 11}, {13, 9}, {5, 3}, {3, 13}, {1, 7}, {11, 15}, {15, 1}};
+            break;
+        case 16:
+            positions = {{9, 9},  {7, 5}, {5, 10}, {12, 7}, {3, 6}, {10, 13}, {13, 11}, {11, 3},
+                         {6, 14}, {8, 1}, {4, 2},  {2, 12}, {0, 8}, {15, 4},  {14, 15}, {1, 0}};
+            break;
+        default:
+            assume(false);
+    }
+    for (FixedPoint& p : positions) p = {p.x * kSubPixels / 16, p.y * kSubPixels / 16};
+    return positions;
 }
 
 dvec2 in_pixels(const FixedPoint& p)
@@ -58,14 +82,32 @@ double far_plane(const PosedScene& posed, const CameraRays& camera)
     return far;
 }
 
-Band::Band(const World& world, const RasterShader& shader, int y0, int y1, int samples)
+namespace {
+
+double forward_far_plane(const PosedScene& posed, const CameraRays& camera)
+{
+    double far = 2 * posed.view.camera.znear;
+    for (int corner = 0; corner < 8; ++corner) {
+        const dvec3 p(corner & 1 ? posed.bounds_max.x : posed.bounds_min.x,
+                      corner & 2 ? posed.bounds_max.y : posed.bounds_min.y,
+                      corner & 4 ? posed.bounds_max.z : posed.bounds_min.z);
+        far = std::max(far, 1.01 * camera.depth(p));
+    }
+    return far;
+}
+
+}  // namespace
+
+Band::Band(const World& world, const RasterShader& shader, int y0, int y1, const RenderSettings& settings)
     : world_(&world),
       posed_(world.posed),
       shader_(&shader),
       y0_(y0),
       y1_(y1),
       far_(far_plane(*world.posed, shader.camera())),
-      positions_(sample_positions(samples))
+      kind_(settings.depth),
+      forward_far_(forward_far_plane(*world.posed, shader.camera())),
+      positions_(sample_positions(settings.msaa))
 {
     const auto count =
         static_cast<std::size_t>(posed_->view.width) * static_cast<std::size_t>(y1 - y0) * positions_.size();
@@ -75,7 +117,7 @@ Band::Band(const World& world, const RasterShader& shader, int y0, int y1, int s
             const Shaded back = shader.background({x + 0.5, y + 0.5});
             color_.insert(color_.end(), positions_.size(), dvec4(back.radiance, back.alpha));
         }
-    depth_.assign(count, 0);  // reversed: 0 is infinitely far
+    depth_.assign(count, kind_ == DepthKind::reversed_32 ? 0 : -1);  // what nothing is behind
 }
 
 void Band::draw(const Piece& piece, bool blend)
@@ -97,20 +139,20 @@ dvec4 Band::resolve_drawn(int x, int y) const
 {
     dvec4 sum(0);
     for (std::size_t s = 0; s < positions_.size(); ++s)
-        if (depth_[at(x, y) + s] > 0) sum += color_[at(x, y) + s];
+        if (depth_[at(x, y) + s] > (kind_ == DepthKind::reversed_32 ? 0 : -1)) sum += color_[at(x, y) + s];
     return sum / static_cast<double>(positions_.size());
 }
 
 void Band::draw_triangle(const Piece& piece, int x, int y, bool blend)
 {
     const std::array<FixedPoint, 3> corners{piece.v[0].snapped, piece.v[1].snapped, piece.v[2].snapped};
-    std::array<double, 4> depth;
+    SampleDepths depth;
     depth.fill(kUncovered);
     std::optional<FixedPoint> first;
     for (std::size_t s = 0; s < positions_.size(); ++s) {
         const FixedPoint p = sample_point(x, y, s);
         if (!covers(corners, p)) continue;
-        const double z = depth_at(piece, in_pixels(p));
+        const double z = kept(depth_at(piece, in_pixels(p)));
         if (!(z > depth_[at(x, y) + s])) continue;
         depth[s] = z;
         if (!first) first = p;
@@ -166,11 +208,26 @@ double Band::depth_of(double distance) const
     return near / distance;
 }
 
+// Forward depth is 1 - reversed depth, but for where it ends; negated, so that nearer is greater in all kinds.
+double Band::kept(double reversed) const
+{
+    if (kind_ == DepthKind::reversed_32) return reversed;
+    const Camera& camera = posed_->view.camera;
+    const double near = camera.znear;
+    const double distance = camera.orthographic ? far_ - reversed * (far_ - near) : near / reversed;
+    const double forward = camera.orthographic ? (distance - near) / (forward_far_ - near)
+                                               : forward_far_ / (forward_far_ - near) * (1 - near / distance);
+    const double z = std::clamp(forward, 0.0, 1.0);
+    if (kind_ == DepthKind::forward_32) return -static_cast<double>(static_cast<float>(z));
+    const double steps = kind_ == DepthKind::forward_24 ? (1 << 24) - 1 : (1 << 16) - 1;
+    return -std::round(z * steps) / steps;
+}
+
 void Band::draw_sphere(const Piece& piece, int x, int y, bool blend)
 {
     const PosedSphere& sphere = posed_->spheres[piece.object - posed_->draws.size()];
     const CameraRays& camera = shader_->camera();
-    std::array<bool, 4> covered{};
+    std::array<bool, kMostSamples> covered{};
     bool any = false;
     for (std::size_t s = 0; s < positions_.size(); ++s)
         any |= covered[s] = meet(*posed_, sphere, camera, camera.pinhole(in_pixels(sample_point(x, y, s)))).has_value();
@@ -194,8 +251,8 @@ void Band::draw_sphere(const Piece& piece, int x, int y, bool blend)
         distance = camera.depth(nearest);
     }
     fragment.position = sphere.center + sphere.radius * fragment.ng;
-    const double z = depth_of(distance);
-    std::array<double, 4> depth;
+    const double z = kept(depth_of(distance));
+    SampleDepths depth;
     depth.fill(kUncovered);
     any = false;
     for (std::size_t s = 0; s < positions_.size(); ++s)
@@ -203,7 +260,7 @@ void Band::draw_sphere(const Piece& piece, int x, int y, bool blend)
     if (any) write(x, y, depth, fragment, blend);
 }
 
-void Band::write(int x, int y, const std::array<double, 4>& depth, const Fragment& fragment, bool blend)
+void Band::write(int x, int y, const SampleDepths& depth, const Fragment& fragment, bool blend)
 {
     const auto shaded = shader_->shade(fragment, behind_);
     if (!shaded) return;

@@ -11,11 +11,14 @@ namespace etalon::reference {
 /// Far enough for everything, metres along the viewing axis, for orthographic depth (TF-5).
 double far_plane(const PosedScene& posed, const CameraRays& camera);
 
+inline constexpr std::size_t kMostSamples = 16;
+using SampleDepths = std::array<double, kMostSamples>;
+
 /// Some rows of the picture with all their samples.
 class Band {
  public:
-    /// Rows y0 ≤ y < y1, with `samples` (1 or 4) a pixel, all showing the background.
-    Band(const World& world, const RasterShader& shader, int y0, int y1, int samples);
+    /// Rows y0 ≤ y < y1, with settings.msaa samples a pixel, all showing the background.
+    Band(const World& world, const RasterShader& shader, int y0, int y1, const RenderSettings& settings);
 
     /// What transmitting pieces show from now on.
     void set_behind(const PictureBehind* behind) { behind_ = behind; }
@@ -45,7 +48,9 @@ class Band {
     void draw_sphere(const Piece& piece, int x, int y, bool blend);
     std::optional<Fragment> triangle_fragment(const Piece& piece, int x, int y, const FixedPoint& covered) const;
     double depth_of(double distance) const;
-    void write(int x, int y, const std::array<double, 4>& depth, const Fragment& fragment, bool blend);
+    /// What is kept and compared of a reversed depth, greater is nearer (TF-7).
+    double kept(double reversed) const;
+    void write(int x, int y, const SampleDepths& depth, const Fragment& fragment, bool blend);
 
     const World* world_;
     const PosedScene* posed_;
@@ -53,6 +58,8 @@ class Band {
     const PictureBehind* behind_ = nullptr;
     int y0_, y1_;
     double far_;
+    DepthKind kind_;
+    double forward_far_;  ///< (TF-7)
     std::vector<FixedPoint> positions_;
     std::vector<dvec4> color_;
     std::vector<double> depth_;

@@ -149,7 +149,8 @@ std::vector<ClipVertex> clip(std::span<const ClipVertex> polygon, const dvec2& g
     return clip_against(kept, [&](const dvec4& p) { return guard.y * p.w + p.y; });
 }
 
-std::vector<Piece> pieces_of_draw(const PosedScene& posed, std::uint32_t object, const dmat4& clip_from_camera)
+std::vector<Piece> pieces_of_draw(const PosedScene& posed, std::uint32_t object, const dmat4& clip_from_camera,
+                                  const Widths& widths)
 {
     const Draw& draw = posed.draws[object];
     const Primitive& primitive = posed.primitive(draw);
@@ -187,12 +188,12 @@ std::vector<Piece> pieces_of_draw(const PosedScene& posed, std::uint32_t object,
             const ScreenVertex a = project(polygon[0], view), b = project(polygon[1], view);
             const dvec2 along = b.pixel - a.pixel;
             if (!(length(along) > 0)) continue;
-            keep_strip(pieces, a, b, dvec2(-along.y, along.x) * (0.5 / length(along)), piece, view);
+            keep_strip(pieces, a, b, dvec2(-along.y, along.x) * (0.5 * widths.line / length(along)), piece, view);
         } else {
             ScreenVertex a = project(polygon[0], view), b = a;
-            a.pixel.x -= 0.5;
-            b.pixel.x += 0.5;
-            keep_strip(pieces, a, b, dvec2(0, 0.5), piece, view);
+            a.pixel.x -= 0.5 * widths.point;
+            b.pixel.x += 0.5 * widths.point;
+            keep_strip(pieces, a, b, dvec2(0, 0.5 * widths.point), piece, view);
         }
     }
     return pieces;

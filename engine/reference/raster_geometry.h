@@ -64,8 +64,15 @@ struct Piece {
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  ///< pixels that it may touch: x0 ≤ x < x1, y0 ≤ y < y1
 };
 
+/// How wide points and lines are, pixels. (SH-7)
+struct Widths {
+    double point = 1;
+    double line = 1;
+};
+
 /// Pieces of draw `object`, clipped and culled, in the order of its elements. (SH-32)
-std::vector<Piece> pieces_of_draw(const PosedScene& posed, std::uint32_t object, const dmat4& clip_from_camera);
+std::vector<Piece> pieces_of_draw(const PosedScene& posed, std::uint32_t object, const dmat4& clip_from_camera,
+                                  const Widths& widths = {});
 
 /// The piece of sphere `sphere` with the pixels that its box may cover; nothing where it lies behind the viewer.
 std::optional<Piece> piece_of_sphere(const PosedScene& posed, std::uint32_t sphere);

@@ -142,9 +142,10 @@ dvec3 RasterSurface::scatter(const dvec3& wi) const
     return sum + coat_weight_ * ggx_about(coat_normal_, h, alpha) * ggx_v(coat_o_, c_i, alpha) * c_i;
 }
 
-// About a normal bent towards the direction in which the highlight is drawn out.
-dvec3 RasterSurface::mirror_direction() const
+// (SH-34); of anisotropic surfaces about a normal bent towards the direction in which the highlight is drawn out.
+dvec3 RasterSurface::reflected_direction() const
 {
+    if (b_ == dvec3(0)) return normalize(dominant_reflection(place_.wo, place_.n, roughness_));
     const dvec3 along = cross(cross(b_, place_.wo), b_);
     const double size = length(along);
     if (!(size > 0)) return reflection(place_.wo, place_.n);
@@ -154,7 +155,7 @@ dvec3 RasterSurface::mirror_direction() const
 
 dvec3 RasterSurface::environment() const
 {
-    const dvec2 ab = specular_scale_bias(roughness_, n_o_);
+    const dvec2 ab = around_->shares->specular(n_o_, roughness_);
     const double both = ab.x + ab.y, w = std::pow(1 - n_o_, 3) / 36;
     const BaseReflectance& r = reflectance_;
     const auto film = [&](const dvec3& without, const dvec3& f0, double by) {
@@ -170,7 +171,7 @@ dvec3 RasterSurface::environment() const
     const dvec3 diffuse = (1 - r.metallic) * (1 - layers_.transmission) * kept / kPi;
 
     const EnvironmentTables& e = *around_->environment;
-    dvec3 sum = occlusion_ * e.prefiltered(mirror_direction(), roughness_) * specular;
+    dvec3 sum = occlusion_ * e.prefiltered(reflected_direction(), roughness_) * specular;
     sum += occlusion_ * (1 - layers_.diffuse_transmission) * diffuse * r.color * e.irradiance(place_.n);
     if (layers_.diffuse_transmission > 0)
         sum += layers_.diffuse_transmission * diffuse * layers_.diffuse_transmission_color * e.irradiance(-place_.n);

@@ -51,7 +51,7 @@ class RasterSurface {
     double microfacets(const dvec3& h, const dvec3& wi) const;
     double sheen_given(double n_i) const;
     double below_sheen(double given) const;
-    dvec3 mirror_direction() const;
+    dvec3 reflected_direction() const;
     dvec3 environment() const;
     dvec3 behind() const;
     dvec3 seen_through(double ior) const;

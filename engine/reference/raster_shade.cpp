@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 namespace etalon::reference {
@@ -56,6 +57,15 @@ RasterMaterial raster_material(const Material& material, const MaterialPoint& po
     return m;
 }
 
+double roughness_with_spread(double roughness, double size, double scale)
+{
+    // 0.007: the codes of 8 bits leave unit normals as short as that.
+    const double spread = size > 0 ? 2 * scale * scale * std::max(0.0, 1 / size - 1.007) : 0;
+    if (spread == 0) return roughness;
+    const double alpha = std::max(roughness * roughness, 1e-3);
+    return std::sqrt(std::min(1.0, std::sqrt(alpha * alpha + spread)));
+}
+
 dvec3 reflect_pbr(const RasterMaterial& m, const dvec3& n, const dvec3& wo, const dvec3& wi, double n_o)
 {
     const double n_i = dot(n, wi);
@@ -96,13 +106,6 @@ dvec3 reflect_blinn_phong(const RasterMaterial& m, const dvec3& n, const dvec3& 
     if (m.has_specular && dot(sum, sum) > 1e-28)
         f += m.f0 * blinn_phong_lobe(blinn_phong_exponent(m.alpha), length(n - normalize(sum)));
     return f * n_i;
-}
-
-dvec2 specular_scale_bias(double roughness, double n_o)  // (SH-34) Karis, "Physically Based Shading on Mobile", 2014
-{
-    const dvec4 r = roughness * dvec4(-1, -0.0275, -0.572, 0.022) + dvec4(1, 0.0425, 1.04, -0.04);
-    const double a = std::min(r.x * r.x, std::exp2(-9.28 * n_o)) * r.x + r.y;
-    return {-1.04 * a + r.z, 1.04 * a + r.w};
 }
 
 std::vector<RasterEmitter> raster_emitters(const World& world)  // (SH-39)
@@ -164,7 +167,8 @@ RasterShares shares_for(const std::vector<Material>& materials, bool blinn_phong
 {
     bool ggx = false, sheen = false;
     for (const Material& material : materials) {
-        if (blinn_phong || !is_gltf_model(material)) continue;
+        const bool exact = material.model == BsdfModel::rough_conductor || is_dielectric(material.model);
+        if (blinn_phong || !(is_gltf_model(material) || exact)) continue;
         ggx = true;
         sheen |= material.layers && material.layers->sheen_color != dvec3(0);
     }
@@ -180,6 +184,7 @@ RasterShader::RasterShader(const World& world, const RenderSettings& settings)
       shares_(shares_for(world.posed->materials(), settings.shading == Shading::blinn_phong, settings.threads)),
       emitters_(raster_emitters(world)),
       blinn_phong_(settings.shading == Shading::blinn_phong),
+      shadows_(settings.shadows == Shadows::map),
       background_(settings.background),
       background_color_(settings.background_color)
 {}
@@ -204,7 +209,12 @@ bool RasterShader::transmits(const Material& material) const
 std::optional<Shaded> RasterShader::shade(const Fragment& fragment, const PictureBehind* behind) const
 {
     const Material& material = *fragment.material;
-    const MaterialPoint point = evaluate(material, world_->textures, fragment.attributes);
+    MaterialPoint point = evaluate(material, world_->textures, fragment.attributes);
+    if (is_gltf_model(material) && material.normal_texture.present() && fragment.attributes.tangent != dvec4(0)) {
+        const dvec4 texel = world_->textures.sample(material.normal_texture, Coding::linear, fragment.attributes.at);
+        const double size = length(2.0 * dvec3(texel) - 1.0);
+        point.roughness = roughness_with_spread(point.roughness, size, material.normal_scale);
+    }
     if (material.alpha_mode == AlphaMode::mask && point.alpha < material.alpha_cutoff) return std::nullopt;
     Shaded out;
     if (material.alpha_mode == AlphaMode::blend) out.alpha = std::clamp(point.alpha, 0.0, 1.0);
@@ -239,6 +249,22 @@ std::optional<Shaded> RasterShader::shade(const Fragment& fragment, const Pictur
     return out;
 }
 
+double RasterShader::lit_share(const Fragment& fragment, const PosedLight& light, const Incident& in) const
+{
+    if (!shadows_ || in.irradiance == dvec3(0)) return 1;
+    const dvec3 ng = fragment.ng == dvec3(0) ? in.wi : fragment.ng;
+    const dvec3 error(1e-9 * (length(fragment.position) + 1));
+    const dvec3 origin = offset_origin(fragment.position, error, ng, in.wi);
+    const bool far = std::isinf(in.distance);
+    const Ray ray{.origin = origin,
+                  .direction = far ? in.wi : light.position - origin,
+                  .t_max = far ? std::numeric_limits<double>::infinity() : 1};
+    return world_->index.transmittance(ray, [&](const Hit& hit) {
+        const Material& met = world_->posed->materials()[world_->index.shapes()[hit.shape].material];
+        return met.alpha_mode == AlphaMode::blend ? 1 : 1 - opacity(*world_, ray, hit);
+    });
+}
+
 template <class Scatter>
 dvec3 RasterShader::lights(const Fragment& fragment, Scatter&& scatter) const  // (SH-31)
 {
@@ -247,7 +273,11 @@ dvec3 RasterShader::lights(const Fragment& fragment, Scatter&& scatter) const  /
         const dvec3 f = scatter(in.wi);
         if (f != dvec3(0)) sum += f * in.irradiance;
     };
-    for (const PosedLight& light : world_->posed->lights) add(incident(light, fragment.position));
+    for (const PosedLight& light : world_->posed->lights) {
+        const Incident in = incident(light, fragment.position);
+        const dvec3 f = scatter(in.wi);
+        if (f != dvec3(0)) sum += f * in.irradiance * lit_share(fragment, light, in);
+    }
     for (const RasterEmitter& emitter : emitters_)
         if (emitter.object != fragment.object) add(incident(emitter, fragment.position));
     return sum;
@@ -278,8 +308,8 @@ dvec3 RasterShader::shade_plain(const Fragment& fragment, const MaterialPoint& p
     if (blinn_phong_) return sum + point.occlusion * (m.diffuse + m.f0) * environment_.irradiance(n) / kPi;
     if (m.diffuse != dvec3(0)) sum += point.occlusion * m.diffuse / kPi * environment_.irradiance(n);  // (SH-33)
     if (!m.has_specular) return sum;
-    const dvec3 r = 2 * dot(wo, n) * n - wo;
-    const dvec2 ab = specular_scale_bias(m.roughness, n_o);
+    const dvec3 r = normalize(dominant_reflection(wo, n, m.roughness));
+    const dvec2 ab = shares_.specular(n_o, m.roughness);
     const dvec3 specular = m.is_mirror ? m.f0 : m.f0 * ab.x + ab.y;
     return sum + point.occlusion * environment_.prefiltered(r, m.roughness) * specular;  // (SH-34)
 }

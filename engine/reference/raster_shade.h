@@ -44,7 +44,7 @@ std::vector<RasterEmitter> raster_emitters(const World& world);
 /// What it sends to `p`, before any cosine at p.
 Incident incident(const RasterEmitter& emitter, const dvec3& p);
 
-/// The rasterizer's light and materials: docs/shading.md §4, without shadows.
+/// The rasterizer's light and materials: docs/shading.md §4.
 class RasterShader {
  public:
     RasterShader(const World& world, const RenderSettings& settings);
@@ -62,6 +62,8 @@ class RasterShader {
     bool has_layers(const Material& material) const;
     RasterSurroundings surroundings(const PictureBehind* behind) const;
     dvec3 shade_plain(const Fragment& fragment, const MaterialPoint& point, const RasterSurface::Place& place) const;
+    /// Part of a punctual light that arrives, by a ray: what shadow maps approximate (SH-43).
+    double lit_share(const Fragment& fragment, const PosedLight& light, const Incident& in) const;
     /// Σ lights f · irradiance, `scatter` being f n·wi.
     template <class Scatter>
     dvec3 lights(const Fragment& fragment, Scatter&& scatter) const;
@@ -72,6 +74,7 @@ class RasterShader {
     RasterShares shares_;
     std::vector<RasterEmitter> emitters_;
     bool blinn_phong_;
+    bool shadows_;
     Background background_;
     dvec3 background_color_;
 };
@@ -87,6 +90,9 @@ struct RasterMaterial {
 };
 RasterMaterial raster_material(const Material& material, const MaterialPoint& point);
 
+/// (TX-7) Perceptual roughness with what the normals add that a texel of length `size` is the mean of.
+double roughness_with_spread(double roughness, double size, double scale);
+
 /// f(wo, wi) n·wi with n·wo clamped to `n_o`; 0 unless n·wi > 0. (SH-31), or (SH-38).
 dvec3 reflect_pbr(const RasterMaterial& m, const dvec3& n, const dvec3& wo, const dvec3& wi, double n_o);
 dvec3 reflect_blinn_phong(const RasterMaterial& m, const dvec3& n, const dvec3& wo, const dvec3& wi);
@@ -95,7 +101,5 @@ dvec3 reflect_blinn_phong(const RasterMaterial& m, const dvec3& n, const dvec3& 
 double blinn_phong_exponent(double alpha);
 /// (SH-38) normalized lobe (p + 2)(p + 4)/(8π(2^(−p/2) + p)) (n·h)^p from d = |n − h|.
 double blinn_phong_lobe(double exponent, double distance);
-/// (SH-34) [A, B].
-dvec2 specular_scale_bias(double roughness, double n_o);
 
 }  // namespace etalon::reference

@@ -51,6 +51,8 @@ RasterShares::RasterShares(bool ggx, bool sheen, unsigned threads)
             const double alpha = kLowestAlpha + y * (1 - kLowestAlpha);
             return ggx_share(unstretched(x * x, alpha), alpha);
         });
+    if (ggx)
+        fill(schlick_, 64, 32, [](double x, double y) { return ggx_schlick_share(x, std::max(y * y, kLowestAlpha)); });
     if (sheen)
         fill(sheen_, 96, 48, [](double x, double y) {
             const double r = kLowestRoughness + y * (1 - kLowestRoughness);
@@ -72,6 +74,17 @@ double RasterShares::Grid::at(double x, double y) const
 double RasterShares::ggx(double cosine, double alpha) const
 {
     return ggx_.at(std::sqrt(stretched(cosine, alpha)), (alpha - kLowestAlpha) / (1 - kLowestAlpha));
+}
+
+double RasterShares::schlick(double cosine, double roughness) const
+{
+    return schlick_.at(cosine, roughness);
+}
+
+dvec2 RasterShares::specular(double cosine, double roughness) const
+{
+    const double e = ggx(cosine, std::clamp(roughness * roughness, kLowestAlpha, 1.0)), w = schlick(cosine, roughness);
+    return {e * (1 - w), e * w};
 }
 
 double RasterShares::sheen(double cosine, double roughness) const

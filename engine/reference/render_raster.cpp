@@ -6,7 +6,9 @@
 #include "engine/base/parallel.h"
 #include "engine/reference/aov.h"
 #include "engine/reference/raster_band.h"
+#include "engine/reference/raster_filter.h"
 #include "engine/reference/reference.h"
+#include "engine/scene/knobs.h"
 
 namespace etalon::reference {
 namespace {
@@ -47,7 +49,7 @@ double sorting_depth(const PosedScene& posed, const CameraRays& camera, std::uin
     return camera.depth(dvec3(draw.world_from_object * dvec4(0.5 * (low + high), 1)));
 }
 
-DrawList make_draw_list(const PosedScene& posed, const RasterShader& shader)
+DrawList make_draw_list(const PosedScene& posed, const RasterShader& shader, const Widths& widths)
 {
     const CameraRays& camera = shader.camera();
     const auto count = static_cast<std::uint32_t>(posed.draws.size() + posed.spheres.size());
@@ -70,7 +72,7 @@ DrawList make_draw_list(const PosedScene& posed, const RasterShader& shader)
         if (it == second) list.first_transmitting = list.pieces.size();
         if (it == middle) list.first_blended = list.pieces.size();
         if (*it < posed.draws.size()) {
-            const std::vector<Piece> pieces = pieces_of_draw(posed, *it, clip_from_camera);
+            const std::vector<Piece> pieces = pieces_of_draw(posed, *it, clip_from_camera, widths);
             list.pieces.insert(list.pieces.end(), pieces.begin(), pieces.end());
         } else if (const auto piece = piece_of_sphere(posed, *it - static_cast<std::uint32_t>(posed.draws.size()))) {
             list.pieces.push_back(*piece);
@@ -89,7 +91,8 @@ class Picture {
           shader_(&shader),
           settings_(&settings),
           progress_(&progress),
-          list_(make_draw_list(*world.posed, shader)),
+          list_(make_draw_list(*world.posed, shader,
+                               {.point = double(settings.point_size), .line = double(settings.line_width)})),
           width_(world.posed->view.width),
           height_(world.posed->view.height),
           by_band_(static_cast<std::size_t>((height_ + kBandRows - 1) / kBandRows)),
@@ -141,7 +144,7 @@ class Picture {
     Band start(std::size_t b) const
     {
         const int y0 = static_cast<int>(b) * kBandRows, y1 = std::min(height_, y0 + kBandRows);
-        Band band(*world_, *shader_, y0, y1, settings_->msaa);
+        Band band(*world_, *shader_, y0, y1, *settings_);
         for (const std::uint32_t i : by_band_[b])
             if (i < list_.first_transmitting) band.draw(list_.pieces[i], false);
         return band;
@@ -193,20 +196,49 @@ class Picture {
     Film film_;
 };
 
+Film draw_picture(const PosedScene& posed, const Requirements& required, const RenderSettings& settings,
+                  const Progress& progress)
+{
+    World world(posed, required.texture_used, settings.mipmaps);
+    world.textures.read_by(settings.texture_filter, settings.anisotropy);
+    const RasterShader shader(world, settings);
+    Film film = Picture(world, shader, settings, progress).draw();
+    if (settings.aovs) film.aovs = render_aovs(world, shader.camera(), true, settings.threads);
+    return film;
+}
+
+/// Each pixel from several drawn ones; AOVs are of the picture's own pixels.
+Film draw_filtered(const PosedScene& posed, const Requirements& required, const RenderSettings& settings,
+                   const Progress& progress)
+{
+    const View& view = posed.view;
+    PosedScene fine = posed;
+    fine.view.width *= settings.ssaa;
+    fine.view.height *= settings.ssaa;
+    RenderSettings plain = settings;
+    plain.aovs = false;
+    plain.point_size *= settings.ssaa;
+    plain.line_width *= settings.ssaa;
+    Film film = reconstruct(draw_picture(fine, required, plain, progress), {view.width, view.height}, settings.ssaa,
+                            settings.pixel_filter);
+    if (!settings.aovs) return film;
+    World world(posed, required.texture_used, settings.mipmaps);
+    world.textures.read_by(settings.texture_filter, settings.anisotropy);
+    film.aovs = render_aovs(world, CameraRays(view), true, settings.threads);
+    return film;
+}
+
 }  // namespace
 
 Film render_raster(const PosedScene& posed, const Requirements& required, const RenderSettings& settings,
                    const Progress& progress)
 {
     assume(posed.scene != nullptr && posed.view.width > 0 && posed.view.height > 0);
-    if (settings.msaa != 1 && settings.msaa != 4)
-        throw Error(Blame::input,
-                    "the rasterizer takes 1 or 4 samples per pixel, not " + std::to_string(settings.msaa));
+    check_knobs(settings);
     progress.report({.stage = "decoding textures", .fraction = 0, .error = {}, .samples = {}});
-    const World world(posed, required.texture_used, settings.mipmaps);
-    const RasterShader shader(world, settings);
-    Film film = Picture(world, shader, settings, progress).draw();
-    if (settings.aovs) film.aovs = render_aovs(world, shader.camera(), true, settings.threads);
+    Film film = settings.ssaa == 1 && settings.pixel_filter == PixelFilter::box
+                    ? draw_picture(posed, required, settings, progress)
+                    : draw_filtered(posed, required, settings, progress);
     progress.report({.stage = "rasterizing", .fraction = 1, .error = {}, .samples = {}});
     return film;
 }

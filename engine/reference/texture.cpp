@@ -188,12 +188,43 @@ TextureSet::TextureSet(const Scene& scene, const std::vector<bool>& used, bool m
     }
 }
 
+Probes probes_along(const dvec2& texels_dx, const dvec2& texels_dy, int most)
+{
+    const bool across = length(texels_dx) >= length(texels_dy);
+    Probes out{.axis = across ? texels_dx : texels_dy};
+    const double longer = length(out.axis), shorter = length(across ? texels_dy : texels_dx);
+    if (!std::isfinite(longer) || !std::isfinite(shorter) || !(longer > 0)) return out;
+    // A thousandth less, so that footprints of a whole ratio have as many probes in any arithmetic.
+    out.count = shorter > 0 ? static_cast<int>(std::min(std::ceil(0.999 * longer / shorter), double(most))) : most;
+    out.count = std::max(out.count, 1);
+    return out;
+}
+
+void TextureSet::read_by(TextureFilter filter, int most_probes)
+{
+    filter_ = filter;
+    most_probes_ = most_probes;
+}
+
+namespace {
+
+Sampler filtered_by(TextureFilter filter, Sampler sampler)
+{
+    if (filter == TextureFilter::file) return sampler;
+    sampler.mipmapped = true;
+    sampler.mip = filter == TextureFilter::trilinear ? Filter::linear : Filter::nearest;
+    sampler.min = sampler.mag = filter == TextureFilter::nearest ? Filter::nearest : Filter::linear;
+    return sampler;
+}
+
+}  // namespace
+
 dvec4 TextureSet::sample(const TextureUse& use, Coding coding, const TexturePoint& at) const
 {
     if (!use.present() || use.texture >= by_texture_.size()) return dvec4(1);
     const MipChain* mips = by_texture_[use.texture][static_cast<std::size_t>(coding)];
     if (mips == nullptr) return dvec4(1);
-    const Sampler& sampler = scene_->textures[use.texture].sampler;
+    const Sampler sampler = filtered_by(filter_, scene_->textures[use.texture].sampler);
     const auto set = static_cast<std::size_t>(use.uv_set == 1 ? 1 : 0);
     const dvec3 uv = use.transform * dvec3(at.uv[set], 1);
     if (!at.has_footprint) return sample_mips(*mips, sampler, dvec2(uv), 0);
@@ -202,7 +233,16 @@ dvec4 TextureSet::sample(const TextureUse& use, Coding coding, const TexturePoin
     const dvec2 dx = dvec2(m * dvec3(at.uv_dx[set], 0)) * size;
     const dvec2 dy = dvec2(m * dvec3(at.uv_dy[set], 0)) * size;
     // Without levels the footprint still chooses between the two filters, hence at least 2 levels here.
-    return sample_mips(*mips, sampler, dvec2(uv), mip_level(dx, dy, std::max(2, mips->levels())));
+    const int levels = std::max(2, mips->levels());
+    const Probes probes = probes_along(dx, dy, most_probes_);
+    if (probes.count == 1) return sample_mips(*mips, sampler, dvec2(uv), mip_level(dx, dy, levels));
+    const dvec2 step = probes.axis / static_cast<double>(probes.count);
+    dvec4 sum(0);
+    for (int i = 1; i <= probes.count; ++i) {
+        const dvec2 probe = dvec2(uv) + (i / (probes.count + 1.0) - 0.5) * probes.axis / size;
+        sum += sample_mips(*mips, sampler, probe, mip_level(step, step, levels));
+    }
+    return sum / static_cast<double>(probes.count);
 }
 
 }  // namespace etalon::reference

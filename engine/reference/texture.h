@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/scene/scene.h"
+#include "engine/scene/settings.h"
 
 namespace etalon::reference {
 
@@ -56,6 +57,13 @@ int wrap_texel(long long i, int size, Wrap wrap);
 /// below one texel or zero. Not finite: the coarsest level (promise T1).
 double mip_level(const dvec2& texels_dx, const dvec2& texels_dy, int levels);
 
+/// Where an anisotropic look-up reads (TX-6): `count` times along `axis`, the longer side of the footprint.
+struct Probes {
+    int count = 1;
+    dvec2 axis{0};  ///< texels
+};
+Probes probes_along(const dvec2& texels_dx, const dvec2& texels_dy, int most);
+
 /// A mip chain at `uv` (texture coordinates), at a level as mip_level gives it; 0 and below magnifies. (TX-2), (TX-3).
 dvec4 sample_mips(const MipChain& mips, const Sampler& sampler, const dvec2& uv, double level);
 
@@ -67,11 +75,16 @@ class TextureSet {
     TextureSet(const TextureSet&) = delete;
     TextureSet& operator=(const TextureSet&) = delete;
 
+    /// How rasterizers read from now on: by another filter than the samplers', with up to so many probes (TX-6).
+    void read_by(TextureFilter filter, int most_probes);
+
     /// The texture of `use` at `at`; (1, 1, 1, 1) where there is none.
     dvec4 sample(const TextureUse& use, Coding coding, const TexturePoint& at) const;
 
  private:
     const Scene* scene_;
+    TextureFilter filter_ = TextureFilter::file;
+    int most_probes_ = 1;
     std::map<std::pair<Index, Coding>, MipChain> chains_;  // by image
     std::vector<std::array<const MipChain*, 2>> by_texture_;
 };

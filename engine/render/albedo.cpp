@@ -71,7 +71,10 @@ double cosine_at(double x_to_power, double scale)
 
 }  // namespace
 
-double ggx_albedo(double cosine, double alpha)
+namespace {
+
+/// E, and the same with each normal weighed by (1 - wo·h)⁵.
+dvec2 ggx_shares(double cosine, double alpha)
 {
     // The mean of G2/G1 over visible normals (spherical caps of Dupuy and Benyoub 2023), u = 1 - v³: few rare normals
     // carry the tail of rough or grazing surfaces.
@@ -81,22 +84,38 @@ double ggx_albedo(double cosine, double alpha)
     const double stretch = std::hypot(alpha * sine, cosine);
     const double x = alpha * sine / stretch, z = cosine / stretch;
     const double lambda_o = smith_lambda(cosine, alpha);
-    double sum = 0;
+    dvec2 sum(0);
     for (int i = 0; i < kSteps; ++i) {
         const double v = (i + 0.5) / kSteps;
         const double cap = 1 - (1 - v * v * v) * (1 + z);
         const double radius = std::sqrt(std::max(0.0, (1 - cap) * (1 + cap)));
-        double row = 0;
+        dvec2 row(0);
         for (const double azimuth : kAzimuths) {
             const double hx = alpha * (radius * azimuth + x), hz = std::max(cap + z, 0.0);
             const double hy2 = alpha * alpha * radius * radius * (1 - azimuth * azimuth);
-            const double along = (sine * hx + cosine * hz) * hz / (hx * hx + hy2 + hz * hz);
-            const double cosine_i = 2 * along - cosine;
-            if (cosine_i > 0) row += (1 + lambda_o) / (1 + lambda_o + smith_lambda(cosine_i, alpha));
+            const double size = std::sqrt(hx * hx + hy2 + hz * hz);
+            const double along = (sine * hx + cosine * hz) / size;
+            const double cosine_i = 2 * along * hz / size - cosine;
+            if (cosine_i <= 0) continue;
+            const double share = (1 + lambda_o) / (1 + lambda_o + smith_lambda(cosine_i, alpha));
+            row += share * dvec2(1, std::pow(std::max(0.0, 1 - along), 5));
         }
         sum += 3 * v * v * row;
     }
     return sum / (kSteps * double(kAzimuths.size()));
+}
+
+}  // namespace
+
+double ggx_albedo(double cosine, double alpha)
+{
+    return ggx_shares(cosine, alpha).x;
+}
+
+double schlick_share(double cosine, double alpha)
+{
+    const dvec2 shares = ggx_shares(cosine, alpha);
+    return shares.y / shares.x;
 }
 
 double sheen_albedo(double cosine, double roughness)
@@ -139,6 +158,16 @@ std::vector<vec4> make_albedo_cells(bool with_sheen, unsigned threads)
         const double lowest = std::cbrt((1 + r) * kSheenAlbedoCosine / (kSheenAlbedoCosine + r));
         const double root = lowest + x * (1 - lowest);
         return r * sheen_albedo(cosine_at(root * root * root, r), r);
+    });
+    return out;
+}
+
+std::vector<vec4> make_raster_albedo_cells(bool with_sheen, unsigned threads)
+{
+    std::vector<vec4> out = make_albedo_cells(with_sheen, threads);
+    out.resize(shared::kSchlickShareFirst, vec4(0));
+    add_table(out, shared::kSchlickShareX, shared::kSchlickShareY, threads, [](double x, double y) {
+        return schlick_share(std::max(x, 1e-9), std::max(y * y, double{shared::kGgxAlbedoAlpha}));
     });
     return out;
 }

@@ -51,42 +51,6 @@ double texel_solid_angle(int row, int width, int height)
     return 2 * kPi / width * (std::cos(kPi * row / height) - std::cos(kPi * (row + 1) / height));
 }
 
-/// The direction of a texel's centre in the map's frame (SH-40).
-dvec3 texel_direction(int column, int row, int width, int height)
-{
-    const double azimuth = 2 * kPi * (column + 0.5) / width;
-    const double polar = polar_angle(row, height);
-    return {std::sin(polar) * std::sin(azimuth), std::cos(polar), -std::sin(polar) * std::cos(azimuth)};
-}
-
-std::array<double, 9> quadratic_basis(const dvec3& d)
-{
-    return {1, d.y, d.z, d.x, d.x * d.y, d.y * d.z, 3 * d.z * d.z - 1, d.x * d.z, d.x * d.x - d.y * d.y};
-}
-
-IrradianceSh irradiance_of(const Image& source)
-{
-    IrradianceSh sums{};
-    for (int y = 0; y < source.height; ++y) {
-        const double solid_angle = texel_solid_angle(y, source.width, source.height);
-        for (int x = 0; x < source.width; ++x) {
-            const auto basis = quadratic_basis(texel_direction(x, y, source.width, source.height));
-            const dvec3 light = solid_angle * dvec3(source.at(x, y, 0), source.at(x, y, 1), source.at(x, y, 2));
-            for (std::size_t i = 0; i < 9; ++i) sums[i] += basis[i] * light;
-        }
-    }
-    // A_l times the square of each real spherical harmonic's normalization; A = π, 2π/3, π/4.
-    constexpr double kConstant = kPi / (4 * kPi);
-    constexpr double kLinear = 2 * kPi / 3 * 3 / (4 * kPi);
-    constexpr double kProduct = kPi / 4 * 15 / (4 * kPi);
-    constexpr double kAxis = kPi / 4 * 5 / (16 * kPi);
-    constexpr double kDifference = kPi / 4 * 15 / (16 * kPi);
-    constexpr std::array<double, 9> kScale{kConstant, kLinear, kLinear,  kLinear,    kProduct,
-                                           kProduct,  kAxis,   kProduct, kDifference};
-    for (std::size_t i = 0; i < 9; ++i) sums[i] *= kScale[i];
-    return sums;
-}
-
 /// D(N·h)(N·l)₊ up to its constant factor, for view and normal along N: a function of N·l alone, since (N·h)² = (1 +
 /// N·l)/2.
 double lobe(double n_l, double alpha)
@@ -98,12 +62,19 @@ double lobe(double n_l, double alpha)
     return k * k * n_l;
 }
 
-/// One row of table `roughness` (SH-35). The weight of a source texel depends on the two rows and on the distance in
+/// Table k weighs light from N·l by this: the lobes of (SH-35), and last the cosine of (SH-33).
+double weight_of(int table, double n_l)
+{
+    if (table > EnvironmentTables::kRoughTables) return std::max(n_l, 0.0);
+    const double roughness = table / double(EnvironmentTables::kRoughTables);
+    return lobe(n_l, roughness * roughness);
+}
+
+/// One row of a table. The weight of a source texel depends on the two rows and on the distance in
 /// azimuth alone, so that each row of weights serves every column.
-void prefilter_row(const std::vector<Planes>& source, double roughness, int row, std::span<dvec3> out)
+void prefilter_row(const std::vector<Planes>& source, int table, int row, std::span<dvec3> out)
 {
     const int columns = static_cast<int>(out.size());
-    const double alpha = roughness * roughness;
     const double polar = polar_angle(row, EnvironmentTables::kTableHeight);
     std::vector<double> weights(kSourceWidth * 2);
     double total = 0;
@@ -115,7 +86,7 @@ void prefilter_row(const std::vector<Planes>& source, double roughness, int row,
             const double azimuth = 2 * kPi * (x + 0.5) / kSourceWidth;
             const double n_l =
                 std::sin(polar) * std::sin(source_polar) * std::cos(azimuth) + std::cos(polar) * std::cos(source_polar);
-            const double weight = lobe(n_l, alpha) * solid_angle;
+            const double weight = weight_of(table, n_l) * solid_angle;
             total += weight;
             weights[static_cast<std::size_t>(x)] = weights[static_cast<std::size_t>(x + kSourceWidth)] = weight;
         }
@@ -149,23 +120,23 @@ EnvironmentTables tabulate(const Image& map, unsigned threads)
     assume(map.width > 0 && map.height > 0 && map.channels >= 3);
     const Image source = shrink(map, kSourceWidth, kSourceHeight, threads);
     const Image mirror = shrink(map, std::min(map.width, kMirrorWidth), std::min(map.height, kMirrorHeight), threads);
-    Tables tables{.irradiance = irradiance_of(source),
-                  .atlas = Image(std::max(mirror.width, Tables::kTableWidth),
-                                 mirror.height + Tables::kRoughTables * Tables::kTableHeight, 4),
-                  .mirror_width = mirror.width,
-                  .mirror_height = mirror.height};
+    constexpr int kSmall = Tables::kRoughTables + 1;
+    Tables tables{
+        .atlas = Image(std::max(mirror.width, Tables::kTableWidth), mirror.height + kSmall * Tables::kTableHeight, 4),
+        .mirror_width = mirror.width,
+        .mirror_height = mirror.height};
     for (int y = 0; y < mirror.height; ++y)
         for (int x = 0; x < mirror.width; ++x)
             put(tables.atlas, x, y, {mirror.at(x, y, 0), mirror.at(x, y, 1), mirror.at(x, y, 2)});
 
     const std::vector<Planes> rows = rows_of(source);
     parallel_for(
-        Tables::kRoughTables * Tables::kTableHeight,
+        kSmall * Tables::kTableHeight,
         [&](std::size_t i) {
             const int row = static_cast<int>(i) % Tables::kTableHeight;
             const int table = static_cast<int>(i) / Tables::kTableHeight + 1;
             std::vector<dvec3> values(Tables::kTableWidth, dvec3(0));
-            prefilter_row(rows, table / double(Tables::kRoughTables), row, values);
+            prefilter_row(rows, table, row, values);
             for (int x = 0; x < Tables::kTableWidth; ++x)
                 put(tables.atlas, x, mirror.height + static_cast<int>(i), values[static_cast<std::size_t>(x)]);
         },

@@ -1,21 +1,13 @@
 #pragma once
-#include <array>
-
 #include "engine/image/image.h"
 
 namespace etalon {
 
-/// Irradiance of a distant environment as a quadratic in the normal, nit·sr (SH-33):
-/// E(n) = c₀ + c₁y + c₂z + c₃x + c₄xy + c₅yz + c₆(3z² − 1) + c₇xz + c₈(x² − y²), which may dip below 0: clamp it.
-/// Ramamoorthi & Hanrahan 2001, with the normalization of the harmonics and A_l folded into the coefficients.
-using IrradianceSh = std::array<dvec3, 9>;
-
 /// What a rasterizer looks up instead of integrating an environment map: (SH-33…35), in the map's own frame, that is
 /// before its rotation and scale, so that turning and dimming it costs nothing.
 struct EnvironmentTables {
-    IrradianceSh irradiance{};
     /// The six tables P of (SH-35) in one RGBA picture (alpha 1): table 0 at the top left, table k = 1 … 5 in the
-    /// kTableWidth × kTableHeight texels from row mirror_height + (k − 1) kTableHeight.
+    /// kTableWidth × kTableHeight texels from row mirror_height + (k − 1) kTableHeight; after them E/π of (SH-33).
     Image atlas;
     int mirror_width = 0;   ///< of table 0: at most 512
     int mirror_height = 0;  ///< at most 256

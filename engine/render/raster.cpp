@@ -9,6 +9,7 @@
 #include "engine/image/mips.h"
 #include "engine/render/albedo.h"
 #include "engine/render/material.h"
+#include "engine/scene/knobs.h"
 
 namespace etalon {
 namespace {
@@ -33,6 +34,21 @@ auto timed(std::vector<StageTime>& times, const char* name, Make make)
     return made;
 }
 
+/// Throws Error(machine) with what the device can do.
+void check_samples(const gpu::Device& device, std::uint32_t samples)
+{
+    const auto can = [&](std::uint32_t count) {
+        return (device.limits().samples & count) != 0 &&
+               device.supports(kRasterColor, VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT, count);
+    };
+    if (can(samples)) return;
+    std::string counts;
+    for (const std::uint32_t count : {1u, 2u, 4u, 8u, 16u})
+        if (can(count)) counts += fmt::format("{}{}", counts.empty() ? "" : ", ", count);
+    throw Error(Blame::machine, fmt::format("{} cannot draw {} samples a pixel in float32", device.name(), samples),
+                fmt::format("--msaa may be {}; --ssaa takes any number", counts));
+}
+
 dvec3 center_of(const PosedScene& posed, const Draw& draw)
 {
     const std::vector<vec3>& positions = posed.primitive(draw).positions;
@@ -55,9 +71,11 @@ RasterScene::RasterScene(gpu::Device& device, const PosedScene& posed, const Req
       settings_(settings),
       variants_(posed, required_, settings_),
       geometry_(timed(times_, "geometry", [&] { return RasterGeometry(device, posed, required); })),
-      textures_(device, *posed.scene, settings.mipmaps && required.has(Feature::mipmaps), settings.threads),
+      textures_(device, *posed.scene, settings.mipmaps && required.has(Feature::mipmaps), settings.texture_filter,
+                settings.threads),
       pipelines_(device, geometry_.streams(), RasterGeometry::attributes()),
       frame_(device, {.size = sizeof(shared::RasterFrame), .memory = gpu::MemoryKind::upload, .name = "frame"}),
+      aov_frame_(device, {.size = sizeof(shared::RasterFrame), .memory = gpu::MemoryKind::upload, .name = "AOV frame"}),
       materials_(gpu::make_buffer(device, pack_materials(posed.materials()), "materials")),
       layers_(gpu::make_buffer(device, pack_layers(posed.materials()), "material layers")),
       lights_(device, {.size = posed.lights.size() * sizeof(shared::LightRecord),
@@ -68,18 +86,24 @@ RasterScene::RasterScene(gpu::Device& device, const PosedScene& posed, const Req
                                 .memory = gpu::MemoryKind::upload,
                                 .name = "emitters"})
 {
-    if (settings.msaa != 1 && settings.msaa != 4)
-        throw Error(Blame::input, fmt::format("the rasterizer takes 1 or 4 samples a pixel, not {}", settings.msaa));
-    if (variants_.samples() == 4 && (device.limits().samples >> 2 & 1) == 0)
-        throw Error(Blame::machine, fmt::format("{} cannot draw 4 samples a pixel in float32", device.name()),
-                    "render with --msaa 1");
+    check_knobs(settings);
+    check_samples(device, variants_.samples());
+    if (!device.supports(depth_format(settings.depth), VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT,
+                         variants_.samples()))
+        throw Error(Blame::machine,
+                    fmt::format("{} has no depth of the kind {}", device.name(), knob_value(settings, "depth")),
+                    "render with --depth reversed-32");
+    if (RasterFilter::is_needed(settings)) filter_.emplace(device, settings);
     add_items(progress);
     if (std::any_of(items_.begin(), items_.end(), [](const Item& item) { return item.transmits; }))
         behind_.emplace(device);
     add_environment();
     add_albedo();
+    add_shadows();
     nothing_behind_ = upload_picture(device, Image(), "nothing behind");
-    frame_bindings_ = bind_frame(nothing_behind_);
+    frame_bindings_ = bind_frame(frame_, nothing_behind_);
+    for (const gpu::Buffer& frame : shadow_frames_) shadow_bindings_.push_back(bind_frame(frame, nothing_behind_));
+    if (settings_.aovs && required_.has(Feature::aovs)) aov_bindings_ = bind_frame(aov_frame_, nothing_behind_);
 }
 
 void RasterScene::add_environment()
@@ -118,13 +142,41 @@ void RasterScene::add_albedo()
     for (const Item& item : items_) {
         const Material& material = posed_.materials()[item.material];
         const bool own = variants_.has_layers(material);
-        any |= own;
+        any |= own || variants_.is_glossy(material);
         sheen |= own && material.layers && material.layers->sheen_color != dvec3(0);
     }
     const std::vector<vec4> cells =
-        any ? timed(times_, "albedo", [&] { return make_albedo_cells(sheen, settings_.threads); })
+        any ? timed(times_, "albedo", [&] { return make_raster_albedo_cells(sheen, settings_.threads); })
             : std::vector<vec4>{vec4(1)};
     albedo_ = gpu::make_buffer(device_, cells, "albedo");
+}
+
+void RasterScene::add_shadows()
+{
+    const bool wanted = settings_.shadows == Shadows::map && required_.has(Feature::punctual_lights);
+    if (wanted && !posed_.lights.empty()) shadows_.emplace(device_, posed_);
+    const std::size_t records = std::max<std::size_t>(1, shadows_ ? 6 * posed_.lights.size() : 0);
+    shadow_records_ = {
+        device_,
+        {.size = records * sizeof(shared::RasterShadow), .memory = gpu::MemoryKind::upload, .name = "shadow records"}};
+    if (!shadows_) return;
+    bool cones = false, parallel = false;
+    for (const RasterShadows::Map& map : shadows_->maps()) {
+        (map.parallel ? parallel : cones) = true;
+        shadow_frames_.emplace_back(device_, gpu::BufferSpec{.size = sizeof(shared::RasterFrame),
+                                                             .memory = gpu::MemoryKind::upload,
+                                                             .name = "shadow frame"});
+        write_frame(shadow_frames_.back(), map.view, 1, DepthKind::reversed_32);
+    }
+    for (Item& item : items_) {
+        if (item.mode == AlphaMode::blend) continue;
+        const auto variant = [&](RasterTarget target) {
+            return item.shape == RasterShape::mesh ? variants_.of(posed_.draws[item.index], target)
+                                                   : variants_.of(posed_.spheres[item.index], target);
+        };
+        if (cones) item.shadow = &pipelines_.get(variant(RasterTarget::shadow));
+        if (parallel) item.parallel_shadow = &pipelines_.get(variant(RasterTarget::parallel_shadow));
+    }
 }
 
 void RasterScene::add_items(const Progress& progress)
@@ -187,12 +239,12 @@ const gpu::Bindings& RasterScene::texture_bindings(const gpu::Layout& layout, co
     return texture_bindings_.emplace(std::move(key), textures_.bind(layout, material, variant)).first->second;
 }
 
-RasterScene::FrameBindings RasterScene::bind_frame(const gpu::Image& behind) const
+RasterScene::FrameBindings RasterScene::bind_frame(const gpu::Buffer& frame, const gpu::Image& behind) const
 {
     FrameBindings bindings;
     const auto bind = [&](RasterShape shape, const gpu::GraphicsPipeline& pipeline) {
         if (bindings.contains(shape)) return;
-        const std::vector<gpu::Bind> binds{{0, frame_},
+        const std::vector<gpu::Bind> binds{{0, frame},
                                            {1, materials_},
                                            {2, lights_},
                                            {3, geometry_.face_normals()},
@@ -200,7 +252,9 @@ RasterScene::FrameBindings RasterScene::bind_frame(const gpu::Image& behind) con
                                            {5, atlas_},
                                            {6, layers_},
                                            {7, albedo_},
-                                           {8, behind}};
+                                           {8, behind},
+                                           {9, shadow_records_},
+                                           {10, shadows_ ? shadows_->depths() : albedo_}};  // the latter is not read
         bindings.emplace(shape, gpu::Bindings(device_, pipeline.layout(), binds, 0));
     };
     for (const Item& item : items_) bind(item.shape, *item.color);

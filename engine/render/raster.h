@@ -10,9 +10,11 @@
 #include "engine/render/environment.h"
 #include "engine/render/raster_behind.h"
 #include "engine/render/raster_emitters.h"
+#include "engine/render/raster_filter.h"
 #include "engine/render/raster_frame.h"
 #include "engine/render/raster_geometry.h"
 #include "engine/render/raster_pipelines.h"
+#include "engine/render/raster_shadows.h"
 #include "engine/render/raster_targets.h"
 #include "engine/render/raster_textures.h"
 
@@ -29,8 +31,8 @@ struct StageTime {
 /// used.
 class RasterScene {
  public:
-    /// Throws Error(machine) when the device lacks memory or 4 samples of float colour, Error(input) when `required`
-    /// lacks a material's model.
+    /// Throws Error(machine) when the device lacks memory or so many samples of float colour, Error(input) when
+    /// `required` lacks a material's model.
     RasterScene(gpu::Device& device, const PosedScene& posed, const Requirements& required,
                 const RenderSettings& settings, const Progress& progress = {});
 
@@ -38,7 +40,7 @@ class RasterScene {
     /// or orthographic) must be that of the posed scene. Waits for the draw before it, not for this one.
     void draw(const View& view);
     /// The picture drawn last: linear premultiplied radiance, RGBA float32, one sample a pixel, in use `sampled`.
-    gpu::Image& picture() { return targets_.resolved; }
+    gpu::Image& picture() { return targets_.picture(); }
     /// Waits for the picture and reads it, with its AOVs where settings ask for them.
     Film read();
     /// Of construction, the last draw and the last read.
@@ -52,7 +54,9 @@ class RasterScene {
         Index material = 0;
         AlphaMode mode = AlphaMode::opaque;
         const gpu::GraphicsPipeline* color = nullptr;
-        const gpu::GraphicsPipeline* aovs = nullptr;  ///< null: not asked for
+        const gpu::GraphicsPipeline* aovs = nullptr;             ///< null: not asked for
+        const gpu::GraphicsPipeline* shadow = nullptr;           ///< null: no light needs it
+        const gpu::GraphicsPipeline* parallel_shadow = nullptr;  ///< likewise
         const gpu::Bindings* textures = nullptr;
         bool transmits = false;  ///< drawn after what it shows, but for BLEND, which is drawn last anyway
         bool culled = false;     ///< back faces are not drawn
@@ -69,13 +73,20 @@ class RasterScene {
     void add_background(bool environment);
     void add_albedo();
     using FrameBindings = std::map<RasterShape, gpu::Bindings>;
-    FrameBindings bind_frame(const gpu::Image& behind) const;
+    FrameBindings bind_frame(const gpu::Buffer& frame, const gpu::Image& behind) const;
+    /// The view with so many pixels as are drawn.
+    View drawn(View view) const;
     void resize(const View& view);
-    void write_frame(const View& view);
+    void write_lights(const View& view);
+    /// `view` has so many pixels along a side of a pixel.
+    void write_frame(const gpu::Buffer& frame, const View& view, int per_side, DepthKind depth);
     void draw_color(gpu::Commands& commands, const View& view);
     void draw_passes(gpu::Commands& commands, const View& view, bool behind);
     void draw_background(gpu::Commands& commands) const;
     void draw_aovs(gpu::Commands& commands, const View& view);
+    void add_shadows();
+    void draw_shadows(gpu::Commands& commands);
+    const gpu::GraphicsPipeline& pipeline_of(const Item& item, RasterTarget target) const;
     /// The items that `wanted` says, in their order.
     struct Selection {
         AlphaMode mode = AlphaMode::opaque;
@@ -83,7 +94,7 @@ class RasterScene {
     };
     void draw_items(gpu::Commands& commands, const View& view, const Selection& wanted, RasterTarget target,
                     const FrameBindings& frame) const;
-    void draw_mesh(gpu::Commands& commands, const View& view, const Item& item) const;
+    void draw_mesh(gpu::Commands& commands, const View& view, const Item& item, RasterTarget target) const;
     void draw_sphere(gpu::Commands& commands, const View& view, const Item& item) const;
     std::vector<const Item*> ordered(const Selection& wanted, const View& view) const;
     bool draws_background() const { return background_ != nullptr; }
@@ -102,6 +113,7 @@ class RasterScene {
     gpu::Image atlas_;
     gpu::Image environment_map_;
     gpu::Buffer frame_;
+    gpu::Buffer aov_frame_;  // of the picture's own pixels
     gpu::Buffer materials_;
     gpu::Buffer layers_;
     gpu::Buffer albedo_;  // shaders/shared/albedo.h; one cell where nothing needs it
@@ -116,6 +128,13 @@ class RasterScene {
     gpu::Image nothing_behind_;
     FrameBindings frame_bindings_;
     FrameBindings behind_bindings_;  // with the picture behind transmitting surfaces
+    FrameBindings aov_bindings_;
+    std::optional<RasterShadows> shadows_;  // nothing: lights cast none
+    gpu::Buffer shadow_records_;
+    std::vector<gpu::Buffer> shadow_frames_;  // of each map
+    std::vector<FrameBindings> shadow_bindings_;
+    bool shadows_drawn_ = false;
+    std::optional<RasterFilter> filter_;  // nothing: a drawn pixel is a pixel
     RasterTargets targets_;
     std::optional<gpu::Commands> commands_;  // of the last draw
 };

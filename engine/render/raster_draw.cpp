@@ -8,6 +8,7 @@
 #include "engine/render/material.h"
 #include "engine/render/raster.h"
 #include "engine/render/render.h"
+#include "engine/scene/knobs.h"
 
 namespace etalon {
 namespace {
@@ -52,18 +53,32 @@ void write(const gpu::Buffer& buffer, std::span<const T> values)
 
 void RasterScene::resize(const View& view)
 {
-    const bool fits = targets_.resolved && targets_.resolved.width() == static_cast<std::uint32_t>(view.width) &&
-                      targets_.resolved.height() == static_cast<std::uint32_t>(view.height);
+    const View fine = drawn(view);
+    const bool fits = targets_.resolved && targets_.resolved.width() == static_cast<std::uint32_t>(fine.width) &&
+                      targets_.resolved.height() == static_cast<std::uint32_t>(fine.height);
     if (fits) return;
     targets_ = {};  // before the new ones take their memory
-    targets_ = make_targets(device_, {view.width, view.height}, variants_.samples(),
-                            settings_.aovs && required_.has(Feature::aovs), behind_.has_value());
+    targets_ = make_targets(device_, {.size = {view.width, view.height},
+                                      .per_side = settings_.ssaa,
+                                      .filtered = filter_.has_value(),
+                                      .samples = variants_.samples(),
+                                      .depth = depth_format(settings_.depth),
+                                      .aovs = settings_.aovs && required_.has(Feature::aovs),
+                                      .levels = behind_.has_value()});
+    if (filter_) filter_->bind(targets_);
     if (!behind_) return;
     behind_->bind(targets_);
-    behind_bindings_ = bind_frame(targets_.levels);
+    behind_bindings_ = bind_frame(frame_, targets_.levels);
 }
 
-void RasterScene::write_frame(const View& view)
+View RasterScene::drawn(View view) const
+{
+    view.width *= settings_.ssaa;
+    view.height *= settings_.ssaa;
+    return view;
+}
+
+void RasterScene::write_lights(const View& view)
 {
     std::vector<shared::LightRecord> lights;
     for (const PosedLight& light : posed_.lights) lights.push_back(pack(light, eye_of(view)));
@@ -71,11 +86,19 @@ void RasterScene::write_frame(const View& view)
     std::vector<shared::EmitterRecord> emitters;
     for (const RasterEmitter& emitter : emitters_) emitters.push_back(pack(emitter, eye_of(view)));
     write(emitter_records_, std::span<const shared::EmitterRecord>(emitters));
+    if (!shadows_) return;
+    const std::vector<shared::RasterShadow> shadows = shadows_->records(eye_of(view));
+    write(shadow_records_, std::span<const shared::RasterShadow>(shadows));
+}
+
+void RasterScene::write_frame(const gpu::Buffer& buffer, const View& view, int per_side, DepthKind depth)
+{
     const shared::RasterFrame frame =
-        make_frame(posed_, view, tables_ ? &*tables_ : nullptr, static_cast<std::uint32_t>(lights.size()),
+        make_frame(posed_, view, tables_ ? &*tables_ : nullptr, static_cast<std::uint32_t>(posed_.lights.size()),
                    static_cast<std::uint32_t>(emitters_.size()),
-                   settings_.background == Background::colour ? settings_.background_color : dvec3(0));
-    write(frame_, std::span<const shared::RasterFrame>(&frame, 1));
+                   settings_.background == Background::colour ? settings_.background_color : dvec3(0),
+                   vec2(dvec2(settings_.point_size, settings_.line_width) * double(per_side)), depth);
+    write(buffer, std::span<const shared::RasterFrame>(&frame, 1));
 }
 
 void RasterScene::draw(const View& view)
@@ -84,11 +107,17 @@ void RasterScene::draw(const View& view)
     assume(view.camera.orthographic == posed_.view.camera.orthographic);
     commands_.reset();  // waits: the last draw may still read what is written now
     resize(view);
-    write_frame(view);
+    write_lights(view);
+    write_frame(frame_, drawn(view), settings_.ssaa, settings_.depth);
     gpu::Commands& commands = commands_.emplace(device_, "raster");
-    draw_color(commands, view);
-    if (targets_.has_aovs()) draw_aovs(commands, view);
-    commands.prepare(targets_.resolved, gpu::ImageUse::sampled);
+    if (shadows_ && !shadows_drawn_) draw_shadows(commands);
+    draw_color(commands, drawn(view));
+    if (filter_) filter_->record(commands, targets_);
+    if (targets_.has_aovs()) {
+        write_frame(aov_frame_, view, 1, DepthKind::reversed_32);
+        draw_aovs(commands, view);
+    }
+    commands.prepare(targets_.picture(), gpu::ImageUse::sampled);
     commands.submit();
 }
 
@@ -102,7 +131,7 @@ void RasterScene::draw_color(gpu::Commands& commands, const View& view)
                                             .clear = clear,
                                             .resolve = multisampled ? &targets_.resolved : nullptr,
                                             .store = !multisampled}}};
-    gpu::DepthTarget depth{.image = &targets_.depth};
+    gpu::DepthTarget depth{.image = &targets_.depth, .clear = settings_.depth == DepthKind::reversed_32 ? 0.f : 1.f};
     if (behind_) {
         color[0].store = depth.store = true;
         commands.begin_rendering(color, depth);
@@ -157,9 +186,44 @@ void RasterScene::draw_aovs(gpu::Commands& commands, const View& view)
     commands.begin_rendering(targets, gpu::DepthTarget{.image = &targets_.aov_depth});
     for (const RasterPass& pass : kPasses)
         if (pass.needed(required_))
-            draw_items(commands, view, {pass.mode, pass.transmits}, RasterTarget::aovs, frame_bindings_);
+            draw_items(commands, view, {pass.mode, pass.transmits}, RasterTarget::aovs, aov_bindings_);
     commands.end_rendering();
     commands.end_region();
+}
+
+const gpu::GraphicsPipeline& RasterScene::pipeline_of(const Item& item, RasterTarget target) const
+{
+    switch (target) {
+        case RasterTarget::color:
+            return *item.color;
+        case RasterTarget::aovs:
+            return *item.aovs;
+        case RasterTarget::shadow:
+            return *item.shadow;
+        case RasterTarget::parallel_shadow:
+            return *item.parallel_shadow;
+    }
+    assume(false);
+    return *item.color;
+}
+
+void RasterScene::draw_shadows(gpu::Commands& commands)
+{
+    commands.begin_region("shadow maps");
+    for (std::size_t i = 0; i < shadows_->maps().size(); ++i) {
+        const RasterShadows::Map& map = shadows_->maps()[i];
+        const RasterTarget target = map.parallel ? RasterTarget::parallel_shadow : RasterTarget::shadow;
+        commands.begin_rendering({}, gpu::DepthTarget{.image = &shadows_->target(), .store = true});
+        for (const RasterPass& pass : kPasses)
+            if (pass.mode != AlphaMode::blend && pass.needed(required_))
+                draw_items(commands, map.view, {pass.mode, pass.transmits}, target, shadow_bindings_[i]);
+        commands.end_rendering();
+        commands.prepare(shadows_->target(), gpu::ImageUse::copy_source);
+        commands.copy(shadows_->target(), shadows_->depths(), 0, 0, i * shadows_->bytes_of_a_map());
+    }
+    commands.barrier(gpu::Work::copy, gpu::Work::draw);
+    commands.end_region();
+    shadows_drawn_ = true;
 }
 
 std::vector<const RasterScene::Item*> RasterScene::ordered(const Selection& wanted, const View& view) const
@@ -182,7 +246,7 @@ void RasterScene::draw_items(gpu::Commands& commands, const View& view, const Se
     const gpu::GraphicsPipeline* bound = nullptr;
     std::optional<RasterShape> shape;
     for (const Item* item : ordered(wanted, view)) {
-        const gpu::GraphicsPipeline* pipeline = target == RasterTarget::color ? item->color : item->aovs;
+        const gpu::GraphicsPipeline* pipeline = &pipeline_of(*item, target);
         if (pipeline != bound) commands.bind(*pipeline);
         if (shape != item->shape) {
             commands.bind(frame.at(item->shape));
@@ -192,13 +256,13 @@ void RasterScene::draw_items(gpu::Commands& commands, const View& view, const Se
         bound = pipeline;
         shape = item->shape;
         if (item->shape == RasterShape::mesh)
-            draw_mesh(commands, view, *item);
+            draw_mesh(commands, view, *item, target);
         else
             draw_sphere(commands, view, *item);
     }
 }
 
-void RasterScene::draw_mesh(gpu::Commands& commands, const View& view, const Item& item) const
+void RasterScene::draw_mesh(gpu::Commands& commands, const View& view, const Item& item, RasterTarget target) const
 {
     const Draw& draw = posed_.draws[item.index];
     const RasterGeometry::Range& range = geometry_.range(draw);
@@ -210,7 +274,10 @@ void RasterScene::draw_mesh(gpu::Commands& commands, const View& view, const Ite
                               .object_id = item.index + 1,
                               .first_face = range.first_face};
     place(draw.world_from_object, eye_of(view), record);
-    commands.set_cull(item.culled ? VK_CULL_MODE_BACK_BIT : VK_CULL_MODE_NONE,
+    // Towards a light the other way round: light that meets a back passes it (SH-6).
+    const bool shadow = target == RasterTarget::shadow || target == RasterTarget::parallel_shadow;
+    const VkCullModeFlagBits culled = shadow ? VK_CULL_MODE_FRONT_BIT : VK_CULL_MODE_BACK_BIT;
+    commands.set_cull(item.culled ? culled : VK_CULL_MODE_NONE,
                       item.mirrored ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE);
     commands.push(record);
     commands.draw_indexed(range.index_count, 1, range.first_index, range.first_vertex);
@@ -240,10 +307,13 @@ Film RasterScene::read()
     const auto start = std::chrono::steady_clock::now();
     Film film = read_targets(device_, targets_);
     read_milliseconds_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-    film.samples = variants_.samples();
+    const auto per_side = static_cast<std::uint32_t>(settings_.ssaa);
+    film.samples = std::uint64_t{variants_.samples()} * per_side * per_side;
     film.metadata["renderer"] = "raster";
     film.metadata["device"] = device_.description();
     film.metadata["msaa"] = std::to_string(variants_.samples());
+    film.metadata["ssaa"] = std::to_string(settings_.ssaa);
+    film.metadata["filter"] = knob_value(settings_, "filter");
     for (const StageTime& time : times())
         film.metadata["milliseconds." + time.name] = fmt::format("{:.3f}", time.milliseconds);
     return film;

@@ -27,10 +27,34 @@ double depth_of_bounds(const View& view, const dvec3& low, const dvec3& high)
     return depth;
 }
 
+/// (TF-7)
+RasterProjection project_forward(const View& view, const dvec3& bounds_min, const dvec3& bounds_max)
+{
+    const Camera& camera = view.camera;
+    const double near = camera.znear;
+    const double far = std::max(2 * near, 1.01 * depth_of_bounds(view, bounds_min, bounds_max));
+    RasterProjection projection{.near = near, .far = far};
+    dmat4& m = projection.clip_from_camera;
+    if (camera.orthographic) {
+        projection.film_half = dvec2(camera.xmag, camera.ymag);
+        m = orthographic(camera.xmag, camera.ymag, near, far);
+        m[2][2] = -1 / (far - near);
+        m[3][2] = -near / (far - near);
+    } else {
+        const double half_height = std::tan(camera.yfov / 2);
+        projection.film_half = dvec2(half_height * view.width / view.height, half_height);
+        m = perspective(camera.yfov, double(view.width) / view.height, near);
+        m[2][2] = -far / (far - near);
+        m[3][2] = -far * near / (far - near);
+    }
+    return projection;
+}
+
 }  // namespace
 
-RasterProjection project(const View& view, const dvec3& bounds_min, const dvec3& bounds_max)
+RasterProjection project(const View& view, const dvec3& bounds_min, const dvec3& bounds_max, DepthKind kind)
 {
+    if (kind != DepthKind::reversed_32) return project_forward(view, bounds_min, bounds_max);
     const Camera& camera = view.camera;
     RasterProjection projection{.near = camera.znear};
     if (!camera.orthographic) {
@@ -48,15 +72,15 @@ RasterProjection project(const View& view, const dvec3& bounds_min, const dvec3&
 }
 
 shared::RasterFrame make_frame(const PosedScene& posed, const View& view, const EnvironmentTables* tables,
-                               std::uint32_t light_count, std::uint32_t emitter_count, const dvec3& background)
+                               std::uint32_t light_count, std::uint32_t emitter_count, const dvec3& background,
+                               vec2 point_and_line, DepthKind depth)
 {
-    const RasterProjection projection = project(view, posed.bounds_min, posed.bounds_max);
+    const RasterProjection projection = project(view, posed.bounds_min, posed.bounds_max, depth);
     const dmat3 rotation = world_from_camera(view);
     const Environment& environment = posed.environment;
     shared::RasterFrame frame{
         .clip_from_world = mat4(projection.clip_from_camera * dmat4(glm::transpose(rotation))),
         .world_from_camera = mat3(rotation),
-        .irradiance = {},
         .environment_radiance = vec3(environment.radiance * environment.scale),
         .environment_turn = vec2(dvec2(std::cos(environment.rotation), std::sin(environment.rotation))),
         .environment_scale = static_cast<float>(environment.scale),
@@ -66,10 +90,10 @@ shared::RasterFrame make_frame(const PosedScene& posed, const View& view, const 
         .mirror_size = uvec2(0),
         .light_count = light_count,
         .emitter_count = emitter_count,
-        .background = vec4(dvec4(background, 1))};
+        .background = vec4(dvec4(background, 1)),
+        .point_size = point_and_line.x,
+        .line_width = point_and_line.y};
     if (tables != nullptr) {
-        for (std::size_t i = 0; i < tables->irradiance.size(); ++i)
-            frame.irradiance[i] = vec3(tables->irradiance[i] * environment.scale);
         frame.mirror_size = uvec2(tables->mirror_width, tables->mirror_height);
     }
     return frame;

@@ -21,6 +21,7 @@ constexpr std::array<StreamFormat, static_cast<std::size_t>(RasterStream::count)
     {"TEXCOORD_0", VK_FORMAT_R32G32_SFLOAT, 2},
     {"TEXCOORD_1", VK_FORMAT_R32G32_SFLOAT, 2},
     {"colours", VK_FORMAT_R32G32B32A32_SFLOAT, 4},
+    {"corners of lines and points", VK_FORMAT_R32G32B32A32_SFLOAT, 4},
 }};
 
 bool is_required(RasterStream stream, const Requirements& required)
@@ -36,6 +37,8 @@ bool is_required(RasterStream stream, const Requirements& required)
             return required.has(Feature::uv1);
         case RasterStream::color:
             return required.has(Feature::vertex_colors);
+        case RasterStream::beside:
+            return required.has(Feature::lines) || required.has(Feature::points);
         default:
             return true;
     }
@@ -71,6 +74,8 @@ std::span<const float> values(const Primitive& primitive, RasterStream stream)
             return flat(primitive.uv[1]);
         case RasterStream::color:
             return flat(primitive.colors);
+        case RasterStream::beside:
+            return {};
         default:
             return flat(primitive.positions);
     }
@@ -92,6 +97,82 @@ vec3 face_normal(const Primitive& primitive, std::size_t face)
     return area > 0 ? vec3(n / area) : vec3(0);
 }
 
+/// How many vertices an element has that is drawn as a rectangle; 0: triangles, drawn as they are.
+std::size_t ends(const Primitive& primitive)
+{
+    return primitive.topology == Topology::lines ? 2 : primitive.topology == Topology::points ? 1 : 0;
+}
+
+std::uint64_t drawn_vertices(const Primitive& primitive)
+{
+    const std::size_t own = ends(primitive);
+    return own == 0 ? primitive.positions.size() : primitive.indices.size() / own * 4;
+}
+
+std::uint64_t drawn_indices(const Primitive& primitive)
+{
+    const std::size_t own = ends(primitive);
+    return own == 0 ? primitive.indices.size() : primitive.indices.size() / own * 6;
+}
+
+/// Which vertex each corner of the rectangles is, four a line or point, going round.
+std::vector<std::uint32_t> corners(const Primitive& primitive)
+{
+    const std::size_t own = ends(primitive);
+    std::vector<std::uint32_t> out;
+    for (std::size_t i = 0; i + own <= primitive.indices.size(); i += own) {
+        const std::uint32_t first = primitive.indices[i], last = primitive.indices[i + own - 1];
+        out.insert(out.end(), {first, last, last, first});
+    }
+    return out;
+}
+
+/// RasterStream::beside of those corners.
+void add_beside(const Primitive& primitive, std::vector<float>& all)
+{
+    if (primitive.topology == Topology::points) {
+        for (std::size_t i = 0; i < primitive.indices.size(); ++i)
+            for (const vec2 corner : {vec2(-1, -1), vec2(1, -1), vec2(1, 1), vec2(-1, 1)})
+                all.insert(all.end(), {corner.x, corner.y, 0, 0});
+        return;
+    }
+    for (std::size_t i = 0; i + 2 <= primitive.indices.size(); i += 2) {
+        const vec3 a = primitive.positions[primitive.indices[i]], b = primitive.positions[primitive.indices[i + 1]];
+        // Seen from its other end, a side is the other side.
+        all.insert(all.end(), {b.x, b.y, b.z, 1, a.x, a.y, a.z, -1, a.x, a.y, a.z, 1, b.x, b.y, b.z, -1});
+    }
+}
+
+/// One attribute of a primitive as it is drawn.
+void add_values(const Primitive& primitive, RasterStream stream, std::uint32_t floats, std::vector<float>& all)
+{
+    if (stream == RasterStream::beside && ends(primitive) != 0) {
+        add_beside(primitive, all);
+        return;
+    }
+    const std::span<const float> own = values(primitive, stream);
+    if (own.empty()) {
+        all.insert(all.end(), drawn_vertices(primitive) * floats, default_value(stream));
+    } else if (ends(primitive) == 0) {
+        all.insert(all.end(), own.begin(), own.end());
+    } else {
+        for (const std::uint32_t vertex : corners(primitive)) {
+            const auto value = own.subspan(std::size_t{vertex} * floats, floats);
+            all.insert(all.end(), value.begin(), value.end());
+        }
+    }
+}
+
+void add_indices(const Primitive& primitive, std::vector<std::uint32_t>& indices)
+{
+    if (ends(primitive) == 0) {
+        indices.insert(indices.end(), primitive.indices.begin(), primitive.indices.end());
+        return;
+    }
+    for (std::uint32_t first = 0; first < drawn_vertices(primitive); first += 4)
+        indices.insert(indices.end(), {first, first + 1, first + 2, first, first + 2, first + 3});
+}
+
 /// The primitives that are drawn, each once, in order.
 std::vector<const Primitive*> drawn_primitives(const PosedScene& posed, const Requirements& required,
                                                std::vector<std::vector<RasterGeometry::Range>>& ranges)
@@ -106,12 +187,13 @@ std::vector<const Primitive*> drawn_primitives(const PosedScene& posed, const Re
             draw.deformed != kNone ? ranges.back()[draw.deformed] : ranges[draw.mesh][draw.primitive];
         if (range.index_count != 0 || primitive.indices.empty()) continue;
         if (!is_required(primitive.topology, required)) continue;
+        const std::uint64_t index_count = drawn_indices(primitive);
         range = {.first_index = static_cast<std::uint32_t>(indices),
-                 .index_count = static_cast<std::uint32_t>(primitive.indices.size()),
+                 .index_count = static_cast<std::uint32_t>(index_count),
                  .first_vertex = static_cast<std::int32_t>(vertices),
                  .first_face = static_cast<std::uint32_t>(faces)};
-        vertices += primitive.positions.size();
-        indices += primitive.indices.size();
+        vertices += drawn_vertices(primitive);
+        indices += index_count;
         if (primitive.topology == Topology::triangles) faces += primitive.indices.size() / 3;
         primitives.push_back(&primitive);
     }
@@ -132,18 +214,14 @@ RasterGeometry::RasterGeometry(gpu::Device& device, const PosedScene& posed, con
         if (!present_[i]) all.assign(4, default_value(stream));
         for (const Primitive* primitive : primitives) {
             if (!present_[i]) break;
-            const std::span<const float> own = values(*primitive, stream);
-            if (own.empty())
-                all.insert(all.end(), primitive->positions.size() * kFormats[i].floats, default_value(stream));
-            else
-                all.insert(all.end(), own.begin(), own.end());
+            add_values(*primitive, stream, kFormats[i].floats, all);
         }
         buffers_[i] = gpu::make_buffer(device, all, kFormats[i].name);
     }
     std::vector<std::uint32_t> indices;
     std::vector<vec3> normals;
     for (const Primitive* primitive : primitives) {
-        indices.insert(indices.end(), primitive->indices.begin(), primitive->indices.end());
+        add_indices(*primitive, indices);
         if (primitive->topology != Topology::triangles) continue;
         for (std::size_t face = 0; face < primitive->indices.size() / 3; ++face)
             normals.push_back(face_normal(*primitive, face));

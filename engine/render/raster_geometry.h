@@ -10,10 +10,11 @@
 namespace etalon {
 
 /// The vertex streams of mesh.vert, in the order of its locations.
-enum class RasterStream : unsigned { position, normal, tangent, uv0, uv1, color, count };
+enum class RasterStream : unsigned { position, normal, tangent, uv0, uv1, color, beside, count };
 
 /// The meshes of a posed scene on a device: one buffer per attribute that is required, shared by all draws. An
-/// attribute that is not required is a single default vertex read with stride 0.
+/// attribute that is not required is a single default vertex read with stride 0. Lines and points are rectangles, made
+/// of two triangles each (SH-7).
 class RasterGeometry {
  public:
     RasterGeometry(gpu::Device& device, const PosedScene& posed, const Requirements& required);

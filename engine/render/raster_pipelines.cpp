@@ -6,6 +6,11 @@
 namespace etalon {
 namespace {
 
+bool is_shadow(RasterTarget target)
+{
+    return target == RasterTarget::shadow || target == RasterTarget::parallel_shadow;
+}
+
 struct Stages {
     const char* vertex;
     const char* fragment;
@@ -14,6 +19,9 @@ struct Stages {
 Stages stages(const RasterVariant& variant)
 {
     const bool aovs = variant.target == RasterTarget::aovs;
+    if (is_shadow(variant.target) && variant.shape == RasterShape::mesh)
+        return {"raster/mesh.vert", "raster/mesh_shadow.frag"};
+    if (is_shadow(variant.target)) return {"raster/screen.vert", "raster/sphere_shadow.frag"};
     switch (variant.shape) {
         case RasterShape::mesh:
             return {"raster/mesh.vert", aovs ? "raster/mesh_aov.frag" : "raster/mesh.frag"};
@@ -24,18 +32,6 @@ Stages stages(const RasterVariant& variant)
     }
     assume(false);
     return {};
-}
-
-VkPrimitiveTopology topology(Topology topology)
-{
-    switch (topology) {
-        case Topology::points:
-            return VK_PRIMITIVE_TOPOLOGY_POINT_LIST;
-        case Topology::lines:
-            return VK_PRIMITIVE_TOPOLOGY_LINE_LIST;
-        default:
-            return VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
-    }
 }
 
 gpu::ShaderSpec shader(const char* path, const RasterVariant& variant)
@@ -49,6 +45,18 @@ gpu::ShaderSpec shader(const char* path, const RasterVariant& variant)
 }
 
 }  // namespace
+
+VkFormat depth_format(DepthKind kind)
+{
+    switch (kind) {
+        case DepthKind::forward_24:
+            return VK_FORMAT_X8_D24_UNORM_PACK32;
+        case DepthKind::forward_16:
+            return VK_FORMAT_D16_UNORM;
+        default:
+            return VK_FORMAT_D32_SFLOAT;
+    }
+}
 
 RasterPipelines::RasterPipelines(gpu::Device& device, std::vector<gpu::VertexStream> streams,
                                  std::vector<gpu::VertexAttribute> attributes)
@@ -66,8 +74,10 @@ gpu::GraphicsPipelineSpec RasterPipelines::describe(const RasterVariant& variant
 {
     const bool mesh = variant.shape == RasterShape::mesh;
     const bool aovs = variant.target == RasterTarget::aovs;
-    const bool blends = !aovs && variant.get(RasterConstant::alpha_blend) != 0;
+    const bool blends = variant.target == RasterTarget::color && variant.get(RasterConstant::alpha_blend) != 0;
     const bool background = variant.shape == RasterShape::background;
+    const auto kind = static_cast<DepthKind>(variant.get(RasterConstant::depth));
+    const VkCompareOp nearer = kind == DepthKind::reversed_32 ? VK_COMPARE_OP_GREATER : VK_COMPARE_OP_LESS;
     const auto [vertex, fragment] = stages(variant);
     gpu::GraphicsPipelineSpec spec{.vertex = shader(vertex, variant),
                                    .fragment = shader(fragment, variant),
@@ -75,22 +85,23 @@ gpu::GraphicsPipelineSpec RasterPipelines::describe(const RasterVariant& variant
                                    .attributes = {},
                                    .colors = {},
                                    // The background goes where nothing has been drawn: infinitely far.
-                                   .depth = {.format = kRasterDepth,
+                                   .depth = {.format = depth_format(kind),
                                              .test = true,
                                              .write = !background && !blends,
-                                             .passes = background ? VK_COMPARE_OP_EQUAL : VK_COMPARE_OP_GREATER},
-                                   .samples = aovs ? 1 : variant.get(RasterConstant::samples),
-                                   .topology = topology(variant.topology),
+                                             .passes = background ? VK_COMPARE_OP_EQUAL : nearer},
+                                   .samples = variant.get(RasterConstant::samples),
                                    .cull = VK_CULL_MODE_NONE,
                                    .name = fragment};
     if (mesh) {
         spec.streams = streams_;
         spec.attributes = attributes_;
+        // Triangles have no corners of their own (RasterStream::beside, the last).
+        if (variant.get(RasterConstant::element) == 0) spec.attributes.pop_back();
     }
     if (aovs) {
         spec.colors.assign(kRasterAovTargets, {.format = kRasterColor, .blend = gpu::Blend::none});
         spec.colors.back().format = kRasterIds;
-    } else {
+    } else if (!is_shadow(variant.target)) {
         spec.colors = {{.format = kRasterColor, .blend = blends ? gpu::Blend::premultiplied : gpu::Blend::none}};
     }
     return spec;

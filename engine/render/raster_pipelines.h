@@ -11,6 +11,8 @@ namespace etalon {
 inline constexpr VkFormat kRasterColor = VK_FORMAT_R32G32B32A32_SFLOAT;
 inline constexpr VkFormat kRasterIds = VK_FORMAT_R32G32_UINT;
 inline constexpr VkFormat kRasterDepth = VK_FORMAT_D32_SFLOAT;
+/// (TF-7) What depth is kept in.
+VkFormat depth_format(DepthKind kind);
 /// Targets of the AOV pass: normal and depth, albedo and u, emission and v, ids (aov.glsl).
 inline constexpr std::uint32_t kRasterAovTargets = 4;
 

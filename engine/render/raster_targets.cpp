@@ -1,16 +1,20 @@
 #include "engine/render/raster_targets.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <span>
 #include <vector>
+
+#include "engine/base/error.h"
 
 namespace etalon {
 namespace {
 
 gpu::Image make_target(gpu::Device& device, ivec2 size, VkFormat format, std::uint32_t samples, const char* name)
 {
-    const bool depth = format == kRasterDepth;
+    const bool depth = format != kRasterColor && format != kRasterIds;
     VkImageUsageFlags usage = depth ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT : VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
     if (samples == 1 && !depth) usage |= VK_IMAGE_USAGE_SAMPLED_BIT;
     return {device,
@@ -19,6 +23,16 @@ gpu::Image make_target(gpu::Device& device, ivec2 size, VkFormat format, std::ui
              .height = static_cast<std::uint32_t>(size.y),
              .samples = samples,
              .usage = usage,
+             .name = name}};
+}
+
+gpu::Image make_storage(gpu::Device& device, uvec2 size, const char* name)
+{
+    return {device,
+            {.format = kRasterColor,
+             .width = size.x,
+             .height = size.y,
+             .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT,
              .name = name}};
 }
 
@@ -50,34 +64,39 @@ uvec2 size_of_levels(ivec2 picture)
     return {std::max(width, below), height + (levels > 1 ? std::max(1u, height >> 1) : 0)};
 }
 
-RasterTargets make_targets(gpu::Device& device, ivec2 size, std::uint32_t samples, bool aovs, bool levels)
+RasterTargets make_targets(gpu::Device& device, const RasterTargetSpec& spec)
 {
+    const ivec2 drawn = spec.size * spec.per_side;
+    const auto most = static_cast<int>(std::min(device.limits().image_side, 1u << 30));
+    if (std::max(spec.size.x, spec.size.y) > most / spec.per_side)
+        throw Error(Blame::machine,
+                    fmt::format("{}x{} pixels, each drawn as {}x{}, are more than the {} a side of {}", spec.size.x,
+                                spec.size.y, spec.per_side, spec.per_side, most, device.name()),
+                    "render with a smaller --size or --ssaa");
     RasterTargets targets;
-    if (samples > 1) targets.color = make_target(device, size, kRasterColor, samples, "colour samples");
-    targets.depth = make_target(device, size, kRasterDepth, samples, "depth samples");
-    targets.resolved = make_target(device, size, kRasterColor, 1, "picture");
-    if (levels) {
-        const uvec2 whole = size_of_levels(size);
-        targets.levels = {device,
-                          {.format = kRasterColor,
-                           .width = whole.x,
-                           .height = whole.y,
-                           .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT,
-                           .name = "picture behind"}};
+    if (spec.samples > 1) targets.color = make_target(device, drawn, kRasterColor, spec.samples, "colour samples");
+    targets.depth = make_target(device, drawn, spec.depth, spec.samples, "depth samples");
+    targets.resolved = make_target(device, drawn, kRasterColor, 1, "picture");
+    if (spec.levels) targets.levels = make_storage(device, size_of_levels(drawn), "picture behind");
+    if (spec.filtered) {
+        targets.filtered_rows = make_storage(device, uvec2(spec.size.x, drawn.y), "filtered rows");
+        targets.filtered = make_storage(device, uvec2(spec.size), "filtered picture");
     }
-    if (!aovs) return targets;
+    if (!spec.aovs) return targets;
     for (std::size_t i = 0; i < kRasterAovTargets; ++i)
-        targets.aovs[i] = make_target(device, size, i + 1 == kRasterAovTargets ? kRasterIds : kRasterColor, 1, "AOVs");
-    targets.aov_depth = make_target(device, size, kRasterDepth, 1, "AOV depth");
+        targets.aovs[i] =
+            make_target(device, spec.size, i + 1 == kRasterAovTargets ? kRasterIds : kRasterColor, 1, "AOVs");
+    targets.aov_depth = make_target(device, spec.size, kRasterDepth, 1, "AOV depth");
     return targets;
 }
 
 Film read_targets(gpu::Device& device, RasterTargets& targets)
 {
-    const std::vector<vec4> pixels = gpu::download_as<vec4>(device, targets.resolved);
+    gpu::Image& picture = targets.picture();
+    const std::vector<vec4> pixels = gpu::download_as<vec4>(device, picture);
     Film film;
-    film.width = static_cast<int>(targets.resolved.width());
-    film.height = static_cast<int>(targets.resolved.height());
+    film.width = static_cast<int>(picture.width());
+    film.height = static_cast<int>(picture.height());
     film.mean.reserve(pixels.size());
     film.alpha.reserve(pixels.size());
     for (const vec4& pixel : pixels) {

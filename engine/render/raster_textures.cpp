@@ -35,8 +35,13 @@ VkFilter filter(Filter filter)
     return filter == Filter::nearest ? VK_FILTER_NEAREST : VK_FILTER_LINEAR;
 }
 
-gpu::SamplerSpec describe(const Sampler& sampler, bool mipmaps)
+gpu::SamplerSpec describe(Sampler sampler, bool mipmaps, TextureFilter by)
 {
+    if (by != TextureFilter::file) {
+        sampler.mag = sampler.min = by == TextureFilter::nearest ? Filter::nearest : Filter::linear;
+        sampler.mip = by == TextureFilter::trilinear ? Filter::linear : Filter::nearest;
+        sampler.mipmapped = true;
+    }
     const bool levels = sampler.mipmapped && mipmaps;
     return {.magnify = filter(sampler.mag),
             .minify = filter(sampler.min),
@@ -50,8 +55,9 @@ gpu::SamplerSpec describe(const Sampler& sampler, bool mipmaps)
 
 }  // namespace
 
-RasterTextures::RasterTextures(gpu::Device& device, const Scene& scene, bool mipmaps, unsigned threads)
-    : device_(device), scene_(scene), mipmaps_(mipmaps), threads_(threads), white_sampler_(device, {})
+RasterTextures::RasterTextures(gpu::Device& device, const Scene& scene, bool mipmaps, TextureFilter filter,
+                               unsigned threads)
+    : device_(device), scene_(scene), mipmaps_(mipmaps), filter_(filter), threads_(threads), white_sampler_(device, {})
 {
     const Texels texel{.width = 1, .height = 1, .is_8_bit = true, .bytes = {255, 255, 255, 255}, .wide = {}};
     white_ = upload(decode_mips(texel, Coding::linear, false), "white");
@@ -119,7 +125,7 @@ gpu::Bindings RasterTextures::bind(const gpu::Layout& layout, const Material& ma
 
 const gpu::Sampler* RasterTextures::find_sampler(const Sampler& sampler) const
 {
-    const gpu::SamplerSpec spec = describe(sampler, mipmaps_);
+    const gpu::SamplerSpec spec = describe(sampler, mipmaps_, filter_);
     for (const auto& [known, made] : samplers_)
         if (known == spec) return &made;
     return nullptr;
@@ -128,7 +134,7 @@ const gpu::Sampler* RasterTextures::find_sampler(const Sampler& sampler) const
 const gpu::Sampler& RasterTextures::sampler(const Sampler& sampler)
 {
     if (const gpu::Sampler* known = find_sampler(sampler)) return *known;
-    const gpu::SamplerSpec spec = describe(sampler, mipmaps_);
+    const gpu::SamplerSpec spec = describe(sampler, mipmaps_, filter_);
     return samplers_.emplace_back(spec, gpu::Sampler(device_, spec)).second;
 }
 

@@ -13,8 +13,8 @@ namespace etalon {
 /// The textures of a posed scene that its variants read, on a device. Each image is decoded once per coding.
 class RasterTextures {
  public:
-    /// `mipmaps`: with all levels; else level 0 alone is there.
-    RasterTextures(gpu::Device& device, const Scene& scene, bool mipmaps, unsigned threads);
+    /// `mipmaps`: with all levels; else level 0 alone is there. `filter`: instead of the samplers' own.
+    RasterTextures(gpu::Device& device, const Scene& scene, bool mipmaps, TextureFilter filter, unsigned threads);
 
     /// Uploads what `variant` reads of `material`, unless it is there.
     void require(const Material& material, const RasterVariant& variant);
@@ -35,6 +35,7 @@ class RasterTextures {
     gpu::Device& device_;
     const Scene& scene_;
     bool mipmaps_;
+    TextureFilter filter_;
     unsigned threads_;
     std::map<ImageKey, gpu::Image> images_;
     std::vector<std::pair<gpu::SamplerSpec, gpu::Sampler>> samplers_;

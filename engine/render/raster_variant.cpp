@@ -10,6 +10,12 @@ namespace {
 
 enum EnvironmentKind : std::uint32_t { none, constant, map };  // of features.glsl
 
+/// kElementTriangle, … of features.glsl
+std::uint32_t element(Topology topology)
+{
+    return topology == Topology::points ? 2 : topology == Topology::lines ? 1 : 0;
+}
+
 struct Model {
     std::uint32_t code;
     Feature feature;
@@ -65,7 +71,10 @@ RasterVariants::RasterVariants(const PosedScene& posed, const Requirements& requ
     : posed_(posed),
       required_(required),
       blinn_phong_(settings.shading == Shading::blinn_phong && required.has(Feature::blinn_phong)),
-      samples_(settings.msaa > 1 && required.has(Feature::msaa) ? 4 : 1),
+      shadows_(settings.shadows == Shadows::map && !posed.lights.empty() && required.has(Feature::punctual_lights)),
+      samples_(settings.msaa > 1 && required.has(Feature::msaa) ? static_cast<std::uint32_t>(settings.msaa) : 1),
+      depth_(settings.depth),
+      probes_(static_cast<std::uint32_t>(settings.anisotropy)),
       environment_(environment_kind(posed.environment, required))
 {
     if (posed.view.camera.orthographic) insist(required, Feature::orthographic, "camera", posed.view.camera.name);
@@ -85,6 +94,7 @@ RasterVariant RasterVariants::of(const Draw& draw, RasterTarget target) const
     // Points and lines without normals are not lit (glTF 2.0, point and line materials).
     variant.set(RasterConstant::lit, triangles || normals);
     variant.set(RasterConstant::triangles, triangles);
+    variant.set(RasterConstant::element, element(primitive.topology));
     variant.set(RasterConstant::vertex_colors, !primitive.colors.empty() && required_.has(Feature::vertex_colors));
     if (primitive.tangents.empty() || !required_.has(Feature::tangents)) {
         variant.set(RasterConstant::normal_texture, 0);
@@ -110,7 +120,6 @@ RasterVariant RasterVariants::of(const PosedSphere& sphere, RasterTarget target)
     variant.set(RasterConstant::lit, 1);
     variant.set(RasterConstant::triangles, 1);
     variant.set(RasterConstant::cull_back, culls_back(material));
-    if (target == RasterTarget::aovs) variant.set(RasterConstant::samples, 1);
     return variant;
 }
 
@@ -131,6 +140,11 @@ bool RasterVariants::has_layers(const Material& material) const
            (material.model == BsdfModel::metallic_roughness || material.model == BsdfModel::specular_glossiness);
 }
 
+bool RasterVariants::is_glossy(const Material& material) const
+{
+    return !blinn_phong_ && (material.model == BsdfModel::rough_conductor || is_dielectric(material.model));
+}
+
 bool RasterVariants::culls_back(const Material& material) const
 {
     return !is_dielectric(material.model) && !(material.double_sided && required_.has(Feature::double_sided));
@@ -142,8 +156,13 @@ void RasterVariants::set_frame(RasterVariant& variant) const
     variant.set(RasterConstant::punctual_lights, !posed_.lights.empty() && required_.has(Feature::punctual_lights));
     variant.set(RasterConstant::emitters, required_.has(Feature::emission));
     variant.set(RasterConstant::blinn_phong, blinn_phong_);
-    variant.set(RasterConstant::orthographic, posed_.view.camera.orthographic);
-    variant.set(RasterConstant::samples, variant.target == RasterTarget::aovs ? 1 : samples_);
+    const bool shadow = variant.target == RasterTarget::shadow;
+    variant.set(RasterConstant::orthographic,
+                variant.target == RasterTarget::parallel_shadow || (!shadow && posed_.view.camera.orthographic));
+    variant.set(RasterConstant::shadows, variant.target == RasterTarget::color && shadows_);
+    variant.set(RasterConstant::probes, probes_);
+    if (variant.target == RasterTarget::color) variant.set(RasterConstant::depth, static_cast<std::uint32_t>(depth_));
+    variant.set(RasterConstant::samples, variant.target == RasterTarget::color ? samples_ : 1);
 }
 
 void RasterVariants::set_material(RasterVariant& variant, const Material& material) const

@@ -44,6 +44,10 @@ enum class RasterConstant : unsigned {
     diffuse_transmission,
     dispersion,
     layer_textures,  ///< bit i: LayerTexture i is read
+    probes,
+    element,  ///< of shaders/raster/features.glsl
+    depth,    ///< DepthKind
+    shadows,
     count
 };
 
@@ -69,7 +73,8 @@ inline constexpr std::size_t kLayerTextures = static_cast<std::size_t>(LayerText
 const TextureUse& layer_texture(const MaterialLayers& layers, LayerTexture texture);
 
 enum class RasterShape { mesh, sphere, background };
-enum class RasterTarget { color, aovs };
+/// Pictures, their AOVs, and depth as seen by lights that shine from a point or in one direction.
+enum class RasterTarget { color, aovs, shadow, parallel_shadow };
 
 /// Which code draws something: everything that tells one pipeline of the rasterizer from another.
 struct RasterVariant {
@@ -98,12 +103,14 @@ class RasterVariants {
     /// The environment behind everything, or (false) RasterFrame::background.
     RasterVariant background(bool environment) const;
 
-    /// Samples a pixel: 1 or 4.
+    /// Samples a pixel.
     std::uint32_t samples() const { return samples_; }
     /// True where faces are culled by their side: every single-sided material but the dielectrics (SH-32).
     bool culls_back(const Material& material) const;
     /// glTF's own models under their own shading: energy of rough reflection (SH-53), layers.
     bool has_layers(const Material& material) const;
+    /// One of the exact models that reflects the environment by (SH-34).
+    bool is_glossy(const Material& material) const;
 
  private:
     void set_frame(RasterVariant& variant) const;
@@ -117,7 +124,10 @@ class RasterVariants {
     const PosedScene& posed_;
     const Requirements& required_;
     bool blinn_phong_;
+    bool shadows_;
     std::uint32_t samples_;
+    DepthKind depth_;
+    std::uint32_t probes_;       // of an anisotropic look-up
     std::uint32_t environment_;  // kEnvironmentNone, … of features.glsl
 };
 

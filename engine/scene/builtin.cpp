@@ -35,6 +35,8 @@ constexpr std::array kRows = {
     Row{{"wires", "lines and points beside triangles"}, builtin::wires},
     Row{{"orthographic", "boxes through an orthographic camera"}, builtin::orthographic},
     Row{{"thin-lens", "boxes through a lens that has one plane in focus"}, builtin::thin_lens},
+    Row{{"siemens-star", "72 white spokes: what a renderer leaves of detail finer than a pixel"},
+        builtin::siemens_star},
     Row{{"specular", "other indices of refraction, specular strength and colour"}, builtin::specular},
     Row{{"clearcoat", "varnish, in places, and with a normal map of its own"}, builtin::clearcoat},
     Row{{"sheen", "satin and velvet"}, builtin::sheen},

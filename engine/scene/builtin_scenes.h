@@ -23,6 +23,7 @@ Scene blinn_phong();
 Scene wires();
 Scene orthographic();
 Scene thin_lens();
+Scene siemens_star();
 
 // builtin_layers.cpp: the layers of glTF's material extensions
 Scene specular();

@@ -311,4 +311,34 @@ Scene thin_lens()
     return std::move(build).finish();
 }
 
+Scene siemens_star()
+{
+    SceneBuilder build("builtin:siemens-star");
+    constexpr int kSpokes = 72;
+    const auto flat = [&](const char* name, double value) {
+        Material material;
+        material.name = name;
+        material.model = BsdfModel::unlit;
+        material.base_color = dvec4(dvec3(value), 1);
+        return build.material(std::move(material));
+    };
+    // At r metres it has 72/(2 pi r) spokes a metre.
+    Primitive star;
+    star.positions.emplace_back(0.f);
+    for (int i = 0; i < 2 * kSpokes; ++i) {
+        const double turn = 2 * kPi * (i + 0.25) / (2 * kSpokes);  // no edge along rows or columns
+        star.positions.emplace_back(dvec3(std::cos(turn), std::sin(turn), 0) * 0.95);
+        if (i % 2 == 0) star.indices.insert(star.indices.end(), {0u, std::uint32_t(i + 1), std::uint32_t(i + 2)});
+    }
+    star.normals.assign(star.positions.size(), vec3(0, 0, 1));
+    build.show("black", make_rectangle(dvec3(0, 0, -0.1), dvec3(1, 0, 0), dvec3(0, 1, 0)), flat("black", 0));
+    build.show("spokes", std::move(star), flat("white", 1));
+    Camera camera;
+    camera.name = "front";
+    camera.orthographic = true;
+    build.camera(camera, translation(dvec3(0, 0, 1)));
+    build.size(256, 256);
+    return std::move(build).finish();
+}
+
 }  // namespace etalon::builtin

@@ -65,7 +65,9 @@ Footprint predict(ivec2 size, const RenderSettings& settings)
 {
     const Costs& cost = costs(settings.renderer);
     const double each = cost.pixel + cost.sample * settings.msaa + (settings.aovs ? kAovs : 0);
-    return {.program = whole(cost.program), .picture = whole(each * double(size.x) * double(size.y))};
+    const bool rasterizes = settings.renderer == Renderer::raster || settings.renderer == Renderer::reference_raster;
+    const double drawn = rasterizes ? double(settings.ssaa) * settings.ssaa : 1;  // of a pixel
+    return {.program = whole(cost.program), .picture = whole(each * drawn * double(size.x) * double(size.y))};
 }
 
 Footprint predict(const PosedScene& posed, const RenderSettings& settings)
@@ -99,7 +101,8 @@ void check_memory(const Footprint& footprint, std::uint64_t memory)
     throw Error(Blame::machine,
                 fmt::format("this needs about {} of memory ({}); it may have {}", describe_bytes(footprint.total()),
                             describe(footprint), describe_bytes(memory)),
-                "a smaller --size or scene needs less (`render --degrade` makes both smaller); --memory N allows more where there "
+                "a smaller --size or scene needs less (`render --degrade` makes both smaller); --memory N allows more "
+                "where there "
                 "is more");
 }
 

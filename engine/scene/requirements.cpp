@@ -187,7 +187,8 @@ class Survey {
         out_.set(feature, who);
         out_.set(use.uv_set == 0 ? Feature::uv0 : Feature::uv1, who);
         if (use.transform != dmat3(1)) out_.set(Feature::texture_transform, who);
-        if (rasterizes_ && settings_.mipmaps && scene_.textures[use.texture].sampler.mipmapped)
+        const bool levels = scene_.textures[use.texture].sampler.mipmapped;
+        if (rasterizes_ && settings_.mipmaps && (levels || settings_.texture_filter != TextureFilter::file))
             out_.set(Feature::mipmaps, label("texture", use.texture, scene_.textures[use.texture].name));
         out_.texture_used[use.texture] = true;
     }

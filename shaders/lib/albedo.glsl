@@ -33,4 +33,10 @@ float sheen_albedo(float cosine, float roughness)
     return interpolate_cells(int(kSheenAlbedoFirst), int(kSheenAlbedoX), int(kSheenAlbedoY), at) / roughness;
 }
 
+// (SH-34) w̄, from tables of rasterizers.
+float schlick_share(float cosine, float roughness)
+{
+    return interpolate_cells(int(kSchlickShareFirst), int(kSchlickShareX), int(kSchlickShareY), vec2(cosine, roughness));
+}
+
 #endif

@@ -3,22 +3,25 @@
 #define ETALON_SHADERS_RASTER_ENVIRONMENT_GLSL
 #include "shaders/raster/equirect.glsl"
 #include "shaders/raster/frame.glsl"
-
-/// (SH-33) Irradiance E(n), not below 0.
-vec3 environment_irradiance(vec3 normal)
-{
-    if (kEnvironment == kEnvironmentConstant) return kPi * frame.environment_radiance;
-    const vec3 n = to_map(normal, frame.environment_turn);
-    vec3 e = frame.irradiance[0] + frame.irradiance[1] * n.y + frame.irradiance[2] * n.z + frame.irradiance[3] * n.x;
-    e += frame.irradiance[4] * (n.x * n.y) + frame.irradiance[5] * (n.y * n.z) +
-         frame.irradiance[6] * (3.0 * n.z * n.z - 1.0) + frame.irradiance[7] * (n.x * n.z) +
-         frame.irradiance[8] * (n.x * n.x - n.y * n.y);
-    return max(e, vec3(0.0));
-}
+#include "shaders/lib/albedo.glsl"  // reads by albedo_cell of frame.glsl
 
 vec3 rough_table(vec2 uv, int table)
 {
     return fetch_equirect(environment_atlas, uv, ivec2(64, 32), int(frame.mirror_size.y) + 32 * (table - 1));
+}
+
+/// (SH-33) Irradiance E(n).
+vec3 environment_irradiance(vec3 normal)
+{
+    if (kEnvironment == kEnvironmentConstant) return kPi * frame.environment_radiance;
+    return kPi * frame.environment_scale * rough_table(equirect(to_map(normal, frame.environment_turn)), 6);
+}
+
+/// (SH-34) Where the middle of what a rough surface reflects comes from; of any length.
+vec3 dominant_reflection(vec3 wo, vec3 n, float roughness)
+{
+    const float alpha = roughness * roughness;
+    return mix(n, reflect(-wo, n), (1.0 - alpha) * (sqrt(max(1.0 - alpha, 0.0)) + alpha));
 }
 
 /// (SH-35) P(r, roughness).
@@ -33,12 +36,12 @@ vec3 environment_reflection(vec3 r, float roughness)
     return frame.environment_scale * mix(fine, rough_table(uv, table + 1), level - float(table));
 }
 
-/// (SH-34) [A, B] of Karis 2014: the specular albedo is F0 A + B.
+/// (SH-34) [A, B]: the specular albedo is F0 A + F90 B.
 vec2 specular_albedo(float roughness, float n_v)
 {
-    const vec4 r = roughness * vec4(-1.0, -0.0275, -0.572, 0.022) + vec4(1.0, 0.0425, 1.04, -0.04);
-    const float a = min(r.x * r.x, exp2(-9.28 * n_v)) * r.x + r.y;
-    return vec2(-1.04 * a + r.z, 1.04 * a + r.w);
+    const float e = ggx_albedo(n_v, clamp(roughness * roughness, 1e-3, 1.0));
+    const float b = e * schlick_share(n_v, roughness);
+    return vec2(e - b, b);
 }
 
 #endif

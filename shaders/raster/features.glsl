@@ -21,7 +21,7 @@ layout(constant_id = 14) const uint kEnvironment = 0u;      // kEnvironmentNone 
 layout(constant_id = 15) const bool kBlinnPhong = false;
 layout(constant_id = 16) const bool kEmission = false;
 layout(constant_id = 17) const bool kOrthographic = false;
-layout(constant_id = 18) const uint kSamples = 1u;          // of a pixel: 1 or 4
+layout(constant_id = 18) const uint kSamples = 1u;          // of a pixel: 1, 2, 4, 8 or 16
 layout(constant_id = 19) const bool kTriangles = true;      // else points or lines
 layout(constant_id = 20) const bool kCullBack = true;       // spheres; meshes are culled by the pipeline
 layout(constant_id = 21) const bool kEmitters = false;       // emissive surfaces that light others (SH-39)
@@ -36,6 +36,14 @@ layout(constant_id = 28) const bool kAnisotropy = false;
 layout(constant_id = 29) const bool kDiffuseTransmission = false;
 layout(constant_id = 30) const bool kDispersion = false;
 layout(constant_id = 31) const uint kLayerTextures = 0u;     // bit i: texture i of LayerRecord, in its order, is read
+layout(constant_id = 32) const uint kProbes = 1u;            // most probes of an anisotropic look-up (TX-6)
+layout(constant_id = 33) const uint kElement = 0u;           // kElementTriangle …
+layout(constant_id = 34) const uint kDepth = 0u;             // DepthKind: 0 is reversed, the others forward (TF-7)
+layout(constant_id = 35) const bool kShadows = false;        // of punctual lights (SH-43)
+
+const uint kElementTriangle = 0u;
+const uint kElementLine = 1u;   // a rectangle between its ends
+const uint kElementPoint = 2u;  // a square
 
 const uint kEnvironmentNone = 0u;
 const uint kEnvironmentConstant = 1u;

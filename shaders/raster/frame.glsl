@@ -15,6 +15,8 @@ layout(set = 0, binding = 5) uniform texture2D environment_atlas;
 layout(set = 0, binding = 6, scalar) readonly buffer LayerBlock { LayerRecord layer_records[]; };
 layout(set = 0, binding = 7, scalar) readonly buffer AlbedoBlock { vec4 albedo_cells[]; };  // shaders/shared/albedo.h
 layout(set = 0, binding = 8) uniform texture2D picture_behind;  // levels of seen.glsl; black but for transmission
+layout(set = 0, binding = 9, scalar) readonly buffer ShadowBlock { RasterShadow shadows[]; };
+layout(set = 0, binding = 10, scalar) readonly buffer ShadowDepthBlock { float shadow_depths[]; };
 
 vec4 albedo_cell(int index) { return albedo_cells[index]; }
 

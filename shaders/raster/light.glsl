@@ -1,7 +1,8 @@
-// The radiance of a surface towards the viewer: docs/shading.md (SH-31), without shadows.
+// The radiance of a surface towards the viewer: docs/shading.md (SH-31), (SH-43).
 #ifndef ETALON_SHADERS_RASTER_LIGHT_GLSL
 #define ETALON_SHADERS_RASTER_LIGHT_GLSL
 #include "shaders/raster/behind.glsl"
+#include "shaders/raster/shadow.glsl"
 
 /// (SH-22) Irradiance on a surface that faces the light, lux or candela per square metre; `wi` points to it.
 vec3 arriving(LightRecord light, vec3 position, out vec3 wi)
@@ -31,7 +32,9 @@ vec3 punctual_light(Seen v, vec3 position)
     for (uint i = 0u; i < frame.light_count; ++i) {
         vec3 wi;
         const vec3 irradiance = arriving(lights[i], position, wi);
-        sum += scattered(v, wi) * irradiance;
+        vec3 light = scattered(v, wi) * irradiance;
+        if (kShadows && light != vec3(0.0)) light *= lit_share(i, position, v.s.ng);
+        sum += light;
     }
     return sum;
 }
@@ -81,10 +84,10 @@ Fresnel environment_fresnel(Seen v, vec2 ab)
     return Fresnel(mix(dielectric, metal, r.metallic), mix(vec3(max_component(lost)), lost_metal, r.metallic));
 }
 
-/// The mirror direction, about a normal that anisotropy bends (SH-65).
+/// Where reflected light comes from (SH-34); of anisotropic surfaces about a bent normal (SH-65).
 vec3 mirrored(Seen v)
 {
-    if (!kAnisotropy) return reflect(-v.wo, v.s.n);
+    if (!kAnisotropy) return dominant_reflection(v.wo, v.s.n, v.s.reflectance.roughness);
     const vec3 b = v.s.layers.bitangent;
     const vec3 along = cross(cross(b, v.wo), b);
     const float size = length(along);
@@ -121,11 +124,11 @@ vec3 environment_light(Seen v)
         return s.occlusion * (s.reflectance.diffuse + s.reflectance.f0) * environment_irradiance(s.n) / kPi;
     }
     if (kGltfModel) return environment_on_layers(v);
-    const vec3 r = reflect(-v.wo, s.n);
-    if (kModel == kModelMirror) return s.occlusion * s.base * environment_reflection(r, 0.0);
+    if (kModel == kModelMirror) return s.occlusion * s.base * environment_reflection(reflect(-v.wo, s.n), 0.0);
     vec3 sum = s.reflectance.diffuse / kPi * environment_irradiance(s.n);
     if (kModel != kModelLambert) {
         const vec2 ab = specular_albedo(s.reflectance.roughness, v.n_v);
+        const vec3 r = dominant_reflection(v.wo, s.n, s.reflectance.roughness);
         sum += environment_reflection(r, s.reflectance.roughness) * (s.reflectance.f0 * ab.x + ab.y);
     }
     return s.occlusion * sum;

@@ -30,7 +30,7 @@ Uv with_derivatives(vec2 uv, float q)
     return Uv(uv, (dFdx(linear) - uv * dFdx(q)) / q, (dFdy(linear) - uv * dFdy(q)) / q);
 }
 
-/// Filtered as its sampler says, at level (TX-2).
+/// Filtered as its sampler says, at level (TX-2), or by several probes along the footprint (TX-6).
 vec4 read(sampler2D map, TextureSlot slot, Point point)
 {
     Uv uv = point.uv[0];
@@ -43,7 +43,17 @@ vec4 read(sampler2D map, TextureSlot slot, Point point)
     const vec2 dx = uv.dx * size;
     const vec2 dy = uv.dy * size;
     // 1e-30: a constant coordinate reads level 0 (T1).
-    return textureLod(map, uv.at, 0.5 * log2(max(max(dot(dx, dx), dot(dy, dy)), 1e-30)));
+    const float x2 = dot(dx, dx);
+    const float y2 = dot(dy, dy);
+    const float level = 0.5 * log2(max(max(x2, y2), 1e-30));
+    if (kProbes == 1u) return textureLod(map, uv.at, level);
+    const float ratio = sqrt(max(x2, y2) / max(min(x2, y2), 1e-30));
+    const uint count = clamp(uint(ceil(min(0.999 * ratio, 16.0))), 1u, kProbes);
+    const vec2 along = x2 >= y2 ? uv.dx : uv.dy;
+    vec4 sum = vec4(0.0);
+    for (uint i = 1u; i <= count; ++i)
+        sum += textureLod(map, uv.at + (float(i) / float(count + 1u) - 0.5) * along, level - log2(float(count)));
+    return sum / float(count);
 }
 
 /// (SH-2) The normal that a texel of a normal map means.

@@ -5,9 +5,20 @@
 
 layout(push_constant, scalar) uniform SphereBlock { RasterSphere sphere; };
 
-/// Vulkan's standard positions of 4 samples a pixel.
-const vec2 kSamplePositions[4] =
-    vec2[4](vec2(0.375, 0.125), vec2(0.875, 0.375), vec2(0.125, 0.625), vec2(0.625, 0.875));
+/// Vulkan's standard positions of 1, 2, 4, 8 and 16 samples a pixel (1.3, §25.3), in sixteenths: y, x. Those of n samples
+/// begin at n - 1.
+const uint kSamplePositions[31] =
+    uint[31](0x88u,                                                                                 //
+             0xccu, 0x44u,                                                                          //
+             0x26u, 0x6eu, 0xa2u, 0xeau,                                                            //
+             0x59u, 0xb7u, 0x9du, 0x35u, 0xd3u, 0x71u, 0xfbu, 0x1fu,                                //
+             0x99u, 0x57u, 0xa5u, 0x7cu, 0x63u, 0xdau, 0xbdu, 0x3bu, 0xe6u, 0x18u, 0x24u, 0xc2u, 0x80u, 0x4fu, 0xfeu, 0x01u);
+
+vec2 sample_position(uint i)
+{
+    const uint packed_position = kSamplePositions[kSamples - 1u + i];
+    return vec2(packed_position & 15u, packed_position >> 4) / 16.0;
+}
 
 /// Where the ray through `pixel` shows the sphere, in metres along the viewing axis; below 0 where it does not. `nearest`
 /// is the ray's closest approach to the centre, relative to it. (RT-4) without its cancellations.
@@ -37,18 +48,21 @@ int covered_samples(vec2 corner)
 {
     vec3 origin, direction, nearest;
     float closest;
-    if (kSamples == 1u) return meet_sphere(corner + 0.5, origin, direction, nearest, closest) > 0.0 ? 1 : 0;
     int mask = 0;
-    for (int i = 0; i < 4; ++i)
-        if (meet_sphere(corner + kSamplePositions[i], origin, direction, nearest, closest) > 0.0) mask |= 1 << i;
+    for (uint i = 0u; i < kSamples; ++i)
+        if (meet_sphere(corner + sample_position(i), origin, direction, nearest, closest) > 0.0) mask |= 1 << i;
     return mask;
 }
 
-/// Reversed depth of a distance along the viewing axis, (TF-4) and (TF-5).
+/// Depth of a distance along the viewing axis, (TF-4), (TF-5), (TF-7).
 float sphere_depth(float t)
 {
     const float near = frame.depth_range.x;
     const float far = frame.depth_range.y;
+    if (kDepth != 0u) {
+        const float over = kOrthographic ? t - near : far * (1.0 - near / t);
+        return clamp(over / (far - near), 0.0, 1.0);
+    }
     return clamp(kOrthographic ? (far - t) / (far - near) : near / t, 0.0, 1.0);
 }
 

@@ -21,11 +21,16 @@ struct Surface {
     vec3 ng;
 };
 
-/// (SH-2) of the front.
-vec3 shading_normal(MaterialRecord material, Point point)
+/// (SH-2) of the front. `spread`: what the normals that a texel is the mean of add to alpha squared (TX-7).
+vec3 shading_normal(MaterialRecord material, Point point, out float spread)
 {
+    spread = 0.0;
     if (!kNormalTexture) return point.n;
-    return mapped_normal(read(normal_map, material.normal_texture, point).xyz, material.normal_scale, point);
+    const vec3 texel = read(normal_map, material.normal_texture, point).xyz;
+    const float size = length(2.0 * texel - 1.0);
+    const float scale = material.normal_scale;
+    if (size > 0.0) spread = 2.0 * scale * scale * max(1.0 / size - 1.007, 0.0);
+    return mapped_normal(texel, scale, point);
 }
 
 Reflectance reflectance_of(vec3 diffuse, vec3 f0, float roughness)
@@ -98,10 +103,15 @@ Surface resolve_surface(MaterialRecord material, Point point)
     s.occlusion = 1.0;
     if (kOcclusionTexture)
         s.occlusion = 1.0 + material.occlusion_strength * (read(occlusion_map, material.occlusion_texture, point).r - 1.0);
-    const vec3 n = shading_normal(material, point);
+    float spread;
+    const vec3 n = shading_normal(material, point, spread);
     s.layers = kLayered ? resolve_layers(layer_records[material.layers], point, n) : no_layers();
     s.reflectance = resolve_model(material, point, base.rgb, s.layers);
     s.reflectance.alpha = max(s.reflectance.roughness * s.reflectance.roughness, 1e-3);
+    if (kGltfModel && spread > 0.0) {
+        s.reflectance.alpha = min(sqrt(s.reflectance.alpha * s.reflectance.alpha + spread), 1.0);
+        s.reflectance.roughness = sqrt(s.reflectance.alpha);
+    }
     const float side = point.front ? 1.0 : -1.0;
     s.n = side * n;
     s.ng = side * point.ng;

@@ -8,17 +8,18 @@ ETALON_SHARED_BEGIN
 struct RasterFrame {
     mat4 clip_from_world;
     mat3 world_from_camera;  // rotation alone
-    vec3 irradiance[9];      // E(n) of (SH-33) in the map's frame, scaled; coefficients as engine/render/environment.h
     vec3 environment_radiance;  // of a constant environment, scaled
     vec2 environment_turn;      // cos, sin of the environment's rotation about +Y
     float environment_scale;
     vec2 film_half;     // half extents of the view at unit distance (perspective) or in metres (orthographic)
     vec2 size;          // of the picture, pixels
-    vec2 depth_range;   // near, and far of an orthographic view, metres
+    vec2 depth_range;   // near, and far of an orthographic or forward view, metres
     uvec2 mirror_size;  // of table 0 in the environment's atlas, texels
     uint light_count;
     uint emitter_count;
     vec4 background;  // behind everything, where the environment is not drawn there
+    float point_size;  // drawn pixels
+    float line_width;
 };
 
 // Bits of EmitterRecord::flags.
@@ -34,6 +35,21 @@ struct EmitterRecord {
     vec3 area_vector;  // sum of area times ng, world, square metres
     uint flags;
 };
+
+/// What one shadow map sees (SH-43). Light i has six in a row: a point light one each way of the axes, the others their first.
+struct RasterShadow {
+    mat3 light_from_world;  // rotation
+    vec3 eye;               // camera-relative world
+    float half_extent;      // of the map, at unit distance or, of a directional light, in metres
+    vec2 depth_range;       // near, and far of a directional light, metres
+    uint kind;              // kShadowNone …
+    uint side;              // texels
+    uint first;             // of its depths, rows from the top
+};
+ETALON_CONSTANT uint kShadowNone = 0u;
+ETALON_CONSTANT uint kShadowCone = 1u;
+ETALON_CONSTANT uint kShadowParallel = 2u;
+ETALON_CONSTANT uint kShadowCube = 3u;
 
 /// One draw of a mesh: push constants.
 struct RasterDraw {
@@ -61,9 +77,18 @@ struct RasterShrink {
     uint level;
 };
 
+/// One axis of reconstruction (AA-2): push constants of filter.comp.
+struct RasterReconstruction {
+    uvec2 size;      // of what is written, pixels
+    int first;       // of the drawn pixels that a pixel weighs, relative to its own first
+    uint taps;       // how many they are
+    uint per_side;   // drawn pixels along a side of a pixel
+    uint vertical;   // 0: along rows
+};
+
 ETALON_SHARED_END
 #ifdef __cplusplus
-static_assert(sizeof(etalon::shared::RasterFrame) == 64 + 36 + 108 + 12 + 8 + 4 + 8 + 8 + 8 + 8 + 8 + 16);
+static_assert(sizeof(etalon::shared::RasterFrame) == 64 + 36 + 12 + 8 + 4 + 8 + 8 + 8 + 8 + 8 + 16 + 8);
 static_assert(sizeof(etalon::shared::EmitterRecord) == 48);
 static_assert(sizeof(etalon::shared::RasterDraw) == 48 + 36 + 20);
 static_assert(sizeof(etalon::shared::RasterSphere) == 28);

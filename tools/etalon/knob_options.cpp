@@ -12,9 +12,17 @@ std::vector<std::string> choices(const Knob& knob)
 {
     if (std::holds_alternative<Switch>(knob.type)) return {"on", "off"};
     std::vector<std::string> all;
+    if (const auto* const choice = std::get_if<NameChoice>(&knob.type))
+        all.assign(choice->values.begin(), choice->values.begin() + choice->count);
     if (const auto* const choice = std::get_if<CountChoice>(&knob.type))
         for (std::size_t i = 0; i < choice->count; ++i) all.push_back(fmt::format("{}", choice->values[i]));
     return all;
+}
+
+std::string argument(const Knob& knob)
+{
+    if (std::holds_alternative<Switch>(knob.type)) return "on|off";
+    return std::holds_alternative<NameChoice>(knob.type) ? "NAME" : "N";
 }
 
 std::string sentence(const Knob& knob)
@@ -32,7 +40,7 @@ std::vector<Option> knob_rows()
     std::vector<Option> rows;
     for (const Knob& knob : knobs())
         rows.push_back({.name = std::string(knob.name),
-                        .argument = std::holds_alternative<Switch>(knob.type) ? "on|off" : "N",
+                        .argument = argument(knob),
                         .help = sentence(knob),
                         .standard = knob_value(RenderSettings{}, knob.name),
                         .choices = choices(knob),

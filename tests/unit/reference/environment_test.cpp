@@ -133,13 +133,13 @@ TEST(Environment, SH_35_a_constant_environment_gives_its_radiance_and_pi_times_i
 
 TEST(Environment, SH_33_irradiance_of_a_smooth_sky_is_the_integral)
 {
-    // L = 1 + d.y lies in the first two bands, where nine coefficients are exact: E = π + 2π/3 n.y.
+    // L = 1 + d.y: E = π + 2π/3 n.y, between nodes of the table by chords.
     const auto sky = [](int, int y) { return 1 + std::cos(kPi * (y + 0.5) / 64); };
     const EnvironmentTables tables(map_environment(128, 64, sky), 1);
     Random random(55);
     for (int i = 0; i < 50; ++i) {
         const dvec3 n = random.direction();
-        EXPECT_NEAR(tables.irradiance(n).x, kPi + 2 * kPi / 3 * n.y, 3e-3);
+        EXPECT_NEAR(tables.irradiance(n).x, kPi + 2 * kPi / 3 * n.y, 5e-3);
     }
 }
 

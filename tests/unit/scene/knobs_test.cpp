@@ -31,6 +31,8 @@ TEST(Knobs, take_their_values_and_refuse_others_with_the_range)
     EXPECT_EQ(settings.max_depth, 1);
     set_knob(settings, "msaa", "1");
     EXPECT_EQ(settings.msaa, 1);
+    set_knob(settings, "filter", "gaussian");
+    EXPECT_EQ(settings.pixel_filter, PixelFilter::gaussian);
     set_knob(settings, "mipmaps", "off");
     EXPECT_FALSE(settings.mipmaps);
     set_knob(settings, "russian-roulette", "on");
@@ -43,8 +45,10 @@ TEST(Knobs, take_their_values_and_refuse_others_with_the_range)
     for (const auto& [name, text, range] :
          {Bad{"spp", "0", "1 to 1073741824 samples/pixel"}, Bad{"spp", "1073741825", "1 to"}, Bad{"spp", "-1", "1 to"},
           Bad{"spp", "9223372036854775808", "1 to"}, Bad{"spp", "99999999999999999999", "1 to"},
-          Bad{"spp", "4x", "1 to"}, Bad{"spp", "", "1 to"}, Bad{"spp", " 4", "1 to"}, Bad{"msaa", "2", "1 or 4"},
-          Bad{"threads", "1000000", "0 to 1024"}, Bad{"mipmaps", "maybe", "on or off"}}) {
+          Bad{"spp", "4x", "1 to"}, Bad{"spp", "", "1 to"}, Bad{"spp", " 4", "1 to"},
+          Bad{"msaa", "3", "1, 2, 4, 8 or 16"}, Bad{"filter", "triangle", "box, tent, gaussian or blackman-harris"},
+          Bad{"filter", "1", "box, tent"}, Bad{"threads", "1000000", "0 to 1024"},
+          Bad{"mipmaps", "maybe", "on or off"}}) {
         try {
             set_knob(settings, name, text);
             FAIL() << name << ' ' << text;
