@@ -5,7 +5,8 @@
 #include <cmath>
 
 #include "engine/reference/layers_point.h"
-#include "shaders/shared/rng.h"
+#include "engine/scene/glass.h"
+#include "shaders/shared/sobol.h"
 
 namespace etalon::reference {
 namespace {
@@ -89,15 +90,44 @@ dvec3 through(const MaterialLayers* medium, double distance)
     return medium == nullptr ? dvec3(1) : absorption(*medium, distance);
 }
 
+// (SH-70) What smooth thin glass does to light on its way straight through, at a point of it.
+struct Pane {
+    dvec3 passed{0};     ///< T
+    dvec3 reflected{0};  ///< F at the same cosine
+};
+
+Pane pane_at(const Surface& s, const dvec3& direction)
+{
+    const BaseReflectance::Value fresnel = s.layered->reflectance.at(std::abs(dot(s.ng, direction)));
+    return {(1.0 - fresnel.hat) * s.layered->reflectance.color, fresnel.f};
+}
+
+// What a pane reflects: a microfacet that is seen, and its mirror image of wo. Nothing where that is below the surface.
+std::optional<BsdfSample> mirrored(const Surface& s, const dvec3& wo, const dvec2& u)
+{
+    const dvec3 o = s.frame.local(wo);
+    const double alpha = kSmallestMicrofacetAlpha;
+    const dvec3 h = sample_visible_normal(o, alpha, u);
+    const dvec3 i = 2 * dot(o, h) * h - o;
+    if (!(i.z > 0)) return std::nullopt;
+    const double density = ggx_d(h, alpha) * ggx_g1(o.z, alpha) / (4 * o.z);
+    return BsdfSample{.wi = s.frame.world(i), .weight = evaluate(*s.layered, o, i) / density, .delta = true};
+}
+
 }  // namespace
 
-PathRandom::PathRandom(std::uint32_t pixel, std::uint32_t sample, std::uint64_t seed)
-    : pixel_(pixel), sample_(sample), seed_(fold_seed(seed))
+PathRandom::PathRandom(std::uint32_t pixel, std::uint32_t sample, std::uint64_t seed, Sequence sampler)
+    : pixel_(pixel), sample_(sample), seed_(fold_seed(seed)), sampler_(sampler)
 {}
 
 dvec2 PathRandom::pair(std::uint32_t dimension) const
 {
     const uvec4 bits = shared::random_bits(pixel_, sample_, dimension, seed_);
+    if (sampler_ == Sequence::sobol) {
+        // The bits beyond the 32 of the sequence are independent: uniform within the last of its cells.
+        const uvec4 even = shared::sobol_bits(pixel_, sample_, dimension, seed_);
+        return {unit_double(even.x, bits.x), unit_double(even.y, bits.y)};
+    }
     return {unit_double(bits.x, bits.y), unit_double(bits.z, bits.w)};
 }
 
@@ -123,7 +153,8 @@ PathTracer::PathTracer(const PosedScene& posed, const World& world, const Render
       background_(settings.background),
       background_color_(settings.background_color),
       max_depth_(settings.max_depth),
-      russian_roulette_(settings.russian_roulette)
+      russian_roulette_(settings.russian_roulette),
+      glass_shadows_(settings.glass_shadows)
 {}
 
 // (SH-23) A ray that meets nothing.
@@ -142,12 +173,13 @@ PathResult PathTracer::trace(const dvec2& film, const PathRandom& random) const
 {
     PathResult result;
     if (max_depth_ < 1) return result;
-    Ray ray = camera_.has_lens() ? camera_.through_lens(film, sample_disk(random.pair(kLens))) : camera_.pinhole(film);
+    Ray ray = camera_.has_lens() ? camera_.through_lens(film, camera_.sample_aperture(random.pair(kLens)))
+                                 : camera_.pinhole(film);
     dvec3 throughput(1);
     double spread = 1;  // (η_t/η_i)² so far: what refraction took from the radiance, not from the chance to matter
     bool by_delta = true;  // no light sampling competes with the ray that is traced
     double ray_pdf = 0;
-    dvec3 from(0);
+    dvec3 from(0);  // where the direction was chosen: behind glass, not where the ray begins
     const MaterialLayers* medium = nullptr;
     for (int depth = 1;; ++depth) {
         const auto hit = world_->index.closest(ray, [&](const Hit& h) {
@@ -170,7 +202,13 @@ PathResult PathTracer::trace(const dvec2& film, const PathRandom& random) const
         const Surface surface = surface_at(*world_, ray, *hit);
         if (surface.emission != dvec3(0))
             result.radiance +=
-                throughput * surface.emission * (alone ? 1 : power_heuristic(ray_pdf, area_.pdf(from, ray, *hit)));
+                throughput * surface.emission *
+                (alone ? 1
+                       : power_heuristic(ray_pdf, area_.pdf(from, Ray{.origin = from, .direction = ray.direction},
+                                                            Hit{.t = length(surface.position - from),
+                                                                .b1 = hit->b1,
+                                                                .b2 = hit->b2,
+                                                                .shape = hit->shape})));
         if (surface.is_black) return result;
         if (depth == max_depth_) {
             result.truncated = true;
@@ -179,12 +217,31 @@ PathResult PathTracer::trace(const dvec2& film, const PathRandom& random) const
 
         const std::uint32_t dimension = kFirstVertex + kPerVertex * static_cast<std::uint32_t>(depth - 1);
         const dvec3 wo = -ray.direction;
+        const dvec2 lobe = random.pair(dimension + kLobeAndRoulette);
+        if (is_glass(surface.material)) {
+            const Pane pane = pane_at(surface, wo);
+            const double chance = max_channel(pane.passed) / (max_channel(pane.passed) + max_channel(pane.reflected));
+            if (lobe.x < chance) {
+                throughput *= pane.passed / chance;
+                ray = Ray{.origin = offset_origin(surface.position, surface.error, surface.ng, ray.direction),
+                          .direction = ray.direction};
+            } else {
+                const auto reflection = mirrored(surface, wo, random.pair(dimension + kDirection));
+                if (!reflection || dot(reflection->wi, surface.ng) <= 0) return result;
+                throughput *= reflection->weight / (1 - chance);
+                by_delta = true;
+                from = surface.position;
+                ray = Ray{.origin = offset_origin(surface.position, surface.error, surface.ng, reflection->wi),
+                          .direction = reflection->wi};
+            }
+            if (throughput == dvec3(0)) return result;
+            continue;
+        }
         if (choices_.sample_lights)
             result.radiance += throughput * direct(surface, wo, medium, random, dimension);
         else
             result.radiance += throughput * from_punctual(surface, wo, medium, random.pair(dimension + kPicks).y);
 
-        const dvec2 lobe = random.pair(dimension + kLobeAndRoulette);
         const auto scattered = scatter(surface, wo, dvec3(random.pair(dimension + kDirection), lobe.x));
         if (!scattered) return result;
         const dvec3 wi = scattered->wi;
@@ -208,13 +265,30 @@ PathResult PathTracer::trace(const dvec2& film, const PathRandom& random) const
 }
 
 // Part of the light along a ray that arrives; `light` does not shadow itself.
-double PathTracer::visibility(const Ray& ray, std::uint32_t light) const
+dvec3 PathTracer::visibility(const Ray& ray, std::uint32_t light) const
 {
-    return world_->index.transmittance(
-        ray, [&](const Hit& hit) { return hit.shape == light ? 1.0 : 1 - opacity(*world_, ray, hit); });
+    dvec3 through_glass(1);
+    const double passed = world_->index.transmittance(ray, [&](const Hit& hit) {
+        if (hit.shape == light) return 1.0;
+        const double opaque = opacity(*world_, ray, hit);
+        if (opaque == 0 || !is_glass(world_->index.shapes()[hit.shape].material)) return 1 - opaque;
+        const Ray unit{.origin = ray.origin, .direction = normalize(ray.direction)};
+        Hit at = hit;
+        at.t *= length(ray.direction);
+        const Surface surface = surface_at(*world_, unit, at);
+        through_glass *= pane_at(surface, unit.direction).passed;
+        return 1.0;
+    });
+    return passed * through_glass;
 }
 
-double PathTracer::visibility(const Surface& surface, const dvec3& target, std::uint32_t light) const
+// (SH-70) Does light go straight through?
+bool PathTracer::is_glass(Index material) const
+{
+    return glass_shadows_ && is_smooth_thin_glass(world_->posed->materials()[material]);
+}
+
+dvec3 PathTracer::visibility(const Surface& surface, const dvec3& target, std::uint32_t light) const
 {
     const dvec3 origin = offset_origin(surface.position, surface.error, surface.ng, target - surface.position);
     return visibility(Ray{.origin = origin, .direction = target - origin, .t_max = 1}, light);
@@ -242,7 +316,7 @@ dvec3 PathTracer::from_area(const Surface& surface, const dvec3& wo, const Mater
     if (!light) return dvec3(0);
     const Response response = respond(surface, wo, light->wi);
     if (response.value == dvec3(0)) return dvec3(0);
-    const double visible = visibility(surface, light->point, light->shape);
+    const dvec3 visible = visibility(surface, light->point, light->shape);
     const MaterialLayers* beyond = medium_towards(*world_, surface, light->wi, medium);
     return through(beyond, length(light->point - surface.position)) * visible *
            power_heuristic(light->pdf, response.pdf) / light->pdf * response.value * light->radiance;
@@ -269,7 +343,7 @@ dvec3 PathTracer::from_punctual(const Surface& surface, const dvec3& wo, const M
         const double share = mean(bring);
         sum += share;
         if (share == 0 || (pick * total >= sum && &light != &posed_->lights.back())) continue;
-        const double visible =
+        const dvec3 visible =
             std::isfinite(in.distance)
                 ? visibility(surface, light.position, kNoShape)
                 : visibility(Ray{.origin = offset_origin(surface.position, surface.error, surface.ng, in.wi),
@@ -289,8 +363,8 @@ dvec3 PathTracer::from_environment(const Surface& surface, const dvec3& wo, cons
     if (response.value == dvec3(0)) return dvec3(0);
     const Ray ray{.origin = offset_origin(surface.position, surface.error, surface.ng, light.direction),
                   .direction = light.direction};
-    const double visible = visibility(ray, kNoShape);
-    if (visible == 0) return dvec3(0);
+    const dvec3 visible = visibility(ray, kNoShape);
+    if (visible == dvec3(0)) return dvec3(0);
     const MaterialLayers* beyond = medium_towards(*world_, surface, light.direction, medium);
     return through(beyond, std::numeric_limits<double>::infinity()) * visible *
            power_heuristic(light.pdf, response.pdf) / light.pdf * response.value *

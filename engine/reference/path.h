@@ -8,10 +8,11 @@
 
 namespace etalon::reference {
 
-/// Uniform numbers of one path: a pure function of pixel, sample and dimension, multiples of 2⁻⁵³ below 1.
+/// Uniform numbers of one path: a pure function of pixel, sample and dimension, multiples of 2⁻⁵³ below 1. With sobol,
+/// the two of a pair() fill the square evenly over the samples of a pixel (MC-8).
 class PathRandom {
  public:
-    PathRandom(std::uint32_t pixel, std::uint32_t sample, std::uint64_t seed);
+    PathRandom(std::uint32_t pixel, std::uint32_t sample, std::uint64_t seed, Sequence sampler = Sequence::pcg);
     dvec2 pair(std::uint32_t dimension) const;
     /// Where in its pixel the path starts (SH-24).
     dvec2 in_pixel() const;
@@ -21,6 +22,7 @@ class PathRandom {
 
  private:
     std::uint32_t pixel_, sample_, seed_;
+    Sequence sampler_;
 };
 
 /// What one path brings.
@@ -53,8 +55,9 @@ class PathTracer {
                     std::uint32_t dimension) const;
     dvec3 from_punctual(const Surface& surface, const dvec3& wo, const MaterialLayers* medium, double pick) const;
     dvec3 from_environment(const Surface& surface, const dvec3& wo, const MaterialLayers* medium, const dvec2& u) const;
-    double visibility(const Surface& surface, const dvec3& target, std::uint32_t light) const;
-    double visibility(const Ray& ray, std::uint32_t light) const;
+    dvec3 visibility(const Surface& surface, const dvec3& target, std::uint32_t light) const;
+    dvec3 visibility(const Ray& ray, std::uint32_t light) const;
+    bool is_glass(Index material) const;
     void leave(const Ray& ray, int depth, const dvec3& throughput, double weight, PathResult& result) const;
 
     const PosedScene* posed_;
@@ -67,6 +70,7 @@ class PathTracer {
     dvec3 background_color_;
     int max_depth_;
     bool russian_roulette_;
+    bool glass_shadows_;
 };
 
 }  // namespace etalon::reference

@@ -19,11 +19,12 @@ constexpr std::uint64_t kMaxSamples = 0xffffffffu;
 
 /// Adds samples first … first + count - 1 of a pixel. How many of their paths the depth limit cut.
 std::uint64_t add_samples(PixelSum& sum, const PathTracer& tracer, std::size_t pixel, std::size_t width,
-                          std::uint64_t seed, std::uint64_t first, std::uint64_t count)
+                          const RenderSettings& settings, std::uint64_t first, std::uint64_t count)
 {
     std::uint64_t truncated = 0;
     for (std::uint64_t s = first; s < first + count; ++s) {
-        const PathRandom random(static_cast<std::uint32_t>(pixel), static_cast<std::uint32_t>(s), seed);
+        const PathRandom random(static_cast<std::uint32_t>(pixel), static_cast<std::uint32_t>(s), settings.seed,
+                                settings.sampler);
         const dvec2 film =
             dvec2(static_cast<double>(pixel % width), static_cast<double>(pixel / width)) + random.in_pixel();
         const PathResult path = tracer.trace(film, random);
@@ -48,13 +49,12 @@ double seconds_since(std::chrono::steady_clock::time_point start)
 class Accumulation {
  public:
     /// Of rows first_row … end_row - 1.
-    Accumulation(const PathTracer& tracer, int width, int first_row, int end_row, std::uint64_t seed, unsigned threads)
+    Accumulation(const PathTracer& tracer, int width, int first_row, int end_row, const RenderSettings& settings)
         : tracer_(&tracer),
           width_(static_cast<std::size_t>(width)),
           first_row_(static_cast<std::size_t>(first_row)),
           height_(static_cast<std::size_t>(end_row - first_row)),
-          seed_(seed),
-          threads_(threads),
+          settings_(&settings),
           sums_(width_ * height_),
           next_(width_ * height_)
     {}
@@ -71,7 +71,7 @@ class Accumulation {
                 if (may_stop && progress.stopped()) stopped = true;
                 if (!stopped) truncated[tile] = render_tile(tile % across, tile / across, count);
             },
-            threads_);
+            settings_->threads);
         if (stopped) return false;
         std::swap(sums_, next_);
         samples_ += count;
@@ -108,7 +108,8 @@ class Accumulation {
             for (std::size_t x = tile_x * kTile; x < std::min(width_, (tile_x + 1) * kTile); ++x) {
                 const std::size_t pixel = y * width_ + x;
                 PixelSum sum = sums_[pixel];
-                truncated += add_samples(sum, *tracer_, first_row_ * width_ + pixel, width_, seed_, samples_, count);
+                truncated +=
+                    add_samples(sum, *tracer_, first_row_ * width_ + pixel, width_, *settings_, samples_, count);
                 next_[pixel] = sum;
             }
         return truncated;
@@ -116,8 +117,7 @@ class Accumulation {
 
     const PathTracer* tracer_;
     std::size_t width_, first_row_, height_;
-    std::uint64_t seed_;
-    unsigned threads_;
+    const RenderSettings* settings_;
     std::vector<PixelSum> sums_, next_;
     std::uint64_t samples_ = 0;
     std::uint64_t truncated_ = 0;
@@ -138,7 +138,7 @@ Film render_path(const PosedScene& posed, const Requirements& required, const Re
     progress.report({.stage = "building the BVH", .fraction = 0, .error = {}, .samples = {}});
     const World world(posed, required.texture_used, false);
     const PathTracer tracer(posed, world, settings);
-    Accumulation picture(tracer, posed.view.width, first_row, end_row, settings.seed, settings.threads);
+    Accumulation picture(tracer, posed.view.width, first_row, end_row, settings);
     if (checkpoints.from != nullptr) picture.resume(*checkpoints.from);
 
     // How many samples a pass has never changes a bit: each is a function of its number alone, and they are added in
@@ -190,7 +190,7 @@ Film render_pixels(const PosedScene& posed, const Requirements& required, const 
             chunks,
             [&](std::size_t chunk) {
                 for (std::size_t k = chunk * kChunk; k < std::min(pixels.size(), (chunk + 1) * kChunk); ++k)
-                    truncated[chunk] += add_samples(sums[k], tracer, pixels[k], width, settings.seed, done, count);
+                    truncated[chunk] += add_samples(sums[k], tracer, pixels[k], width, settings, done, count);
             },
             settings.threads);
         done += count;

@@ -37,7 +37,8 @@ PathTracer::State::State(gpu::Device& d, const PosedScene& posed, const Requirem
       frame(d, {.size = sizeof(shared::PathFrame), .name = "path frame"})
 {
     scene.frame.max_depth = std::min(scene.frame.max_depth, kMostDepth);
-    queues = make_path_queues(d, kWaveCapacity, scene.frame.max_depth, scene.features.volume);
+    queues = make_path_queues(d, kWaveCapacity, scene.frame.max_depth,
+                               scene.features.volume || scene.features.glass_shadows);
 }
 
 void PathTracer::State::resize(const View& view)
@@ -229,6 +230,12 @@ PathTracer::PathTracer(gpu::Device& device, const PosedScene& posed, const Requi
 PathTracer::PathTracer(PathTracer&&) noexcept = default;
 PathTracer& PathTracer::operator=(PathTracer&&) noexcept = default;
 PathTracer::~PathTracer() = default;
+
+void PathTracer::start(const View& view, std::uint64_t seed)
+{
+    state_->scene.frame.seed = path_seed(seed);
+    start(view);
+}
 
 void PathTracer::start(const View& view)
 {

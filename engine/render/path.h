@@ -46,6 +46,8 @@ class PathTracer {
 
     /// Drops all samples and looks through `view`, whose kind of camera must be that of the posed scene.
     void start(const View& view);
+    /// The same with other random numbers than those of the settings.
+    void start(const View& view, std::uint64_t seed);
     /// Does a bounded piece of the current pass, about 50 ms of device time; a pass is one sample in every pixel, or
     /// more of small pictures, but not beyond `most_samples` in all. True when it completed the pass.
     bool step(std::uint64_t most_samples);

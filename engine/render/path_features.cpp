@@ -22,7 +22,7 @@ void check_model(const PosedScene& posed, const Requirements& required, Index ma
 
 }  // namespace
 
-PathFeatures path_features(const PosedScene& posed, const Requirements& required)
+PathFeatures path_features(const PosedScene& posed, const Requirements& required, const RenderSettings& settings)
 {
     for (const Draw& draw : posed.draws)
         if (posed.primitive(draw).topology == Topology::triangles)
@@ -68,7 +68,11 @@ PathFeatures path_features(const PosedScene& posed, const Requirements& required
     // The rest is what the scene has: a bit too many must not change what its data mean.
     out.sky_map = has(Feature::environment_map) && posed.environment.map != nullptr;
     out.thin_lens = has(Feature::thin_lens) && posed.view.camera.lens.has_value();
-    out.orthographic = has(Feature::orthographic) && posed.view.camera.orthographic;
+    out.equirectangular = has(Feature::equirectangular) && posed.view.camera.equirectangular;
+    out.orthographic = has(Feature::orthographic) && posed.view.camera.orthographic && !out.equirectangular;
+    out.thin_lens = out.thin_lens && !out.equirectangular && !posed.view.camera.orthographic;
+    out.sobol = settings.sampler == Sequence::sobol;
+    out.glass_shadows = settings.glass_shadows && out.transmission;
     for (std::size_t i = 0; i < posed.scene->textures.size(); ++i) {
         const Index image = posed.scene->textures[i].image;
         if (required.texture_used[i] && image != kNone && !posed.scene->images[image].is_8_bit) out.wide_texels = true;
@@ -115,7 +119,10 @@ std::vector<gpu::Constant> path_constants(const PathFeatures& f)
             {kSpecSky, f.sky},
             {kSpecSkyMap, f.sky_map},
             {kSpecThinLens, f.thin_lens},
-            {kSpecOrthographic, f.orthographic}};
+            {kSpecOrthographic, f.orthographic},
+            {kSpecEquirectangular, f.equirectangular},
+            {kSpecSobol, f.sobol},
+            {kSpecGlassShadows, f.glass_shadows}};
 }
 
 }  // namespace etalon

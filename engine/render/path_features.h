@@ -20,7 +20,8 @@ struct PathFeatures {
     bool iridescence = false, anisotropy = false, dispersion = false, diffuse_transmission = false;
     bool layer_textures = false;
     bool emission = false, punctual = false, sky = false, sky_map = false;
-    bool thin_lens = false, orthographic = false;
+    bool thin_lens = false, orthographic = false, equirectangular = false;
+    bool sobol = false, glass_shadows = false;  ///< of the settings
 
     bool textures() const
     {
@@ -33,7 +34,7 @@ struct PathFeatures {
 };
 
 /// Throws Error(input) when `required` lacks the model of a material that something visible uses.
-PathFeatures path_features(const PosedScene& posed, const Requirements& required);
+PathFeatures path_features(const PosedScene& posed, const Requirements& required, const RenderSettings& settings);
 
 /// As specialization constants of shaders/path/features.glsl.
 std::vector<gpu::Constant> path_constants(const PathFeatures& features);

@@ -30,8 +30,8 @@ struct PathQueues {
     PathBuffer hits, shadows;
     gpu::Buffer counters, dispatches, retries;
 };
-/// `with_medium`: paths may be inside bodies (SH-59), and carry which.
-PathQueues make_path_queues(gpu::Device& device, std::uint32_t capacity, std::uint32_t max_depth, bool with_medium);
+/// `with_more`: paths carry a fourth texel: in which body they are (SH-59), how far glass is behind (SH-70).
+PathQueues make_path_queues(gpu::Device& device, std::uint32_t capacity, std::uint32_t max_depth, bool with_more);
 
 /// Rows of the picture that share one set of buffers: all of it, but for pictures over 4 million pixels.
 struct PathBand {

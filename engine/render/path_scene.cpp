@@ -107,7 +107,7 @@ PathScene make_path_scene(gpu::Device& device, const PosedScene& posed, const Re
     out.frame.light_count = static_cast<shared::uint>(lights.size());
     out.frame.strategy_count =
         shared::uint(emitters.count > 0) + shared::uint(!lights.empty()) + shared::uint(out.frame.cells_x > 0);
-    out.frame.seed = static_cast<shared::uint>(settings.seed ^ settings.seed >> 32);
+    out.frame.seed = path_seed(settings.seed);
     out.frame.max_depth = static_cast<shared::uint>(std::max(settings.max_depth, 1));
     out.frame.roulette = settings.russian_roulette ? 1u : 0u;
     out.frame.background = vec3(settings.background_color);

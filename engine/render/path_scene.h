@@ -31,6 +31,12 @@ struct PathScene {
 PathScene make_path_scene(gpu::Device& device, const PosedScene& posed, const Requirements& required,
                           const RenderSettings& settings, const Progress& progress);
 
+/// The 32 bits that the kernels' random numbers know of a seed.
+inline shared::uint path_seed(std::uint64_t seed)
+{
+    return static_cast<shared::uint>(seed ^ seed >> 32);
+}
+
 /// The camera's part of the frame (engine/scene/pose.h).
 void set_view(shared::PathFrame& frame, const View& view, const dvec3& origin);
 

@@ -87,6 +87,42 @@ View orbit_view(const Orbit& orbit, const Subject& subject, ivec2 size)
     return view;
 }
 
+/// (TF-7) The radius of an aperture at `f_stop`, on a film of kFilmHeight.
+constexpr double kFilmHeight = 0.024;  // metres: of the 36 mm x 24 mm that f-stops are commonly thought of on
+
+ThinLens thin_lens(const LensSettings& lens, const View& view, const Subject& subject)
+{
+    const Camera& camera = view.camera;
+    const dvec3 axis = -normalize(dvec3(view.world_from_camera[2]));
+    const double ahead = dot(axis, subject.center - dvec3(view.world_from_camera[3]));
+    const double focus = lens.focus.value_or(ahead > 0 ? ahead : subject.radius);
+    if (!(lens.f_stop > 0) || !(focus > 0) || !std::isfinite(focus) || lens.blades < 0)
+        throw Error(Blame::input, "lens: f-stop and focus must be positive and finite, and blades not negative",
+                    "for example f-stop 2.8, focus at 1.5 metres, 6 blades");
+    if (camera.orthographic || camera.equirectangular)
+        throw Error(Blame::input, "lens: only a perspective camera has one", "leave out the lens or the projection");
+    const double focal_length = kFilmHeight / (2 * std::tan(camera.yfov / 2));
+    return {.aperture_radius = focal_length / (2 * lens.f_stop), .focus_distance = focus, .blades = lens.blades};
+}
+
+// What the settings make of the view's camera.
+View changed(View view, const Subject& subject, const PoseSettings& settings)
+{
+    Camera& camera = view.camera;
+    if (settings.projection == Projection::orthographic && !camera.orthographic) {
+        // As large as perspective shows what is as far away as the scene's centre.
+        const dvec3 axis = -normalize(dvec3(view.world_from_camera[2]));
+        const double ahead = dot(axis, subject.center - dvec3(view.world_from_camera[3]));
+        camera.orthographic = true;
+        camera.ymag = std::tan(camera.yfov / 2) * (ahead > 0 ? ahead : subject.radius);
+        camera.xmag = camera.ymag * view.width / view.height;
+    }
+    camera.equirectangular = settings.projection == Projection::equirectangular;
+    if (settings.projection != Projection::camera) camera.lens.reset();
+    if (settings.lens) camera.lens = thin_lens(*settings.lens, view, subject);
+    return view;
+}
+
 }  // namespace
 
 ivec2 picture_size(const PoseSettings& settings, const FilmHints& hints)
@@ -105,7 +141,7 @@ ivec2 picture_size(const PoseSettings& settings, const FilmHints& hints)
 View choose_view(const Scene& scene, std::span<const PlacedCamera> cameras, const Subject& subject, ivec2 size,
                  const PoseSettings& settings, std::vector<std::string>& notes)
 {
-    if (settings.orbit) return orbit_view(*settings.orbit, subject, size);
+    if (settings.orbit) return changed(orbit_view(*settings.orbit, subject, size), subject, settings);
     if (cameras.empty() && !settings.camera) {
         const Orbit framed{
             .azimuth = kFramedAzimuth, .elevation = kFramedElevation, .distance = {}, .target = {}, .yfov = {}};
@@ -113,13 +149,13 @@ View choose_view(const Scene& scene, std::span<const PlacedCamera> cameras, cons
         view.camera.name = "framed";
         notes.push_back(fmt::format("no camera in the scene: framed from azimuth {}, elevation {} degrees",
                                     kFramedAzimuth, kFramedElevation));
-        return view;
+        return changed(view, subject, settings);
     }
     const PlacedCamera& placed = settings.camera ? find_camera(scene, cameras, *settings.camera) : cameras.front();
     View view{.width = size.x, .height = size.y, .world_from_camera = dmat4(1), .camera = placed.state};
     view.world_from_camera = rigid(placed.world_from_node, "camera " + label(scene, placed));
     view.camera.xmag = view.camera.ymag * size.x / size.y;
-    return view;
+    return changed(view, subject, settings);
 }
 
 }  // namespace etalon

@@ -135,7 +135,7 @@ BsdfSample sample_bsdf(Bsdf bsdf, vec3 wo, vec3 u)
     vec3 wi = specular ? 2.0 * dot(wo, h) * h - wo : sample_cosine_hemisphere(u.xy);
     if (kGlossy && bsdf.model == kModelMetallicRoughness) {
         GlossySample drawn = sample_glossy(bsdf.glossy, wo, u);
-        if (kVolume && max_component(drawn.straight) > 0.0) return BsdfSample(drawn.wi, drawn.straight, 0.0);
+        if ((kVolume || kGlassShadows) && max_component(drawn.straight) > 0.0) return BsdfSample(drawn.wi, drawn.straight, 0.0);
         if (drawn.wi == vec3(0.0)) return kNoBsdfSample;
         wi = drawn.wi;
     }

@@ -44,6 +44,7 @@ struct Glossy {
     float coat_alpha;
     vec3 coat_n;  // local
     vec3 ng;      // local
+    vec3 glass;   // (SH-70) what goes straight through, in the place of (SH-57); black: none
 };
 
 // What has no layer but M.
@@ -76,6 +77,7 @@ Glossy plain_glossy(vec3 diffuse, vec3 f0, float alpha)
     g.coat_alpha = 1.0;
     g.coat_n = vec3(0.0, 0.0, 1.0);
     g.ng = vec3(0.0, 0.0, 1.0);
+    g.glass = vec3(0.0);
     return g;
 }
 
@@ -314,7 +316,7 @@ vec3 eval_glossy(Glossy g, vec3 wo, vec3 wi, out float pdf)
 
 struct GlossySample {
     vec3 wi;        // zero where a facet sends it to the side that its lobe does not reach: it carries nothing
-    vec3 straight;  // weight of a sample that goes straight through a body of index 1; else 0
+    vec3 straight;  // weight of a sample that goes straight through a body of index 1, or glass; else 0
 };
 
 // Draws wi by u.xy, the lobe by u.z, what the facet does by what is left of that.
@@ -356,6 +358,10 @@ GlossySample sample_glossy(Glossy g, vec3 wo, vec3 u)
                 if (kSheen) drawn.straight *= sheen_passed(g, g.sheen_seen);
                 if (kClearcoat) drawn.straight *= 1.0 - g.coat;
             }
+        }
+        if (kGlassShadows && through && max_component(g.glass) > 0.0) {
+            wi = -wo;
+            drawn.straight = g.glass / (lobes.specular * chance);
         }
         drawn.wi = through ? wi : drawn.wi;
     }

@@ -24,7 +24,9 @@ void main()
     if (kUnlit && floatBitsToUint(load_material(s.material, 4u).w) == kModelUnlit) light = base.xyz;
 
     uint at = 4u * path.slot;
-    float depth = hit ? dot(s.position - frame.eye, frame.forward) : uintBitsToFloat(0x7f800000u);
+    float along = dot(s.position - frame.eye, frame.forward);
+    if (kEquirectangular) along = robust_length(s.position - frame.eye);
+    float depth = hit ? along : uintBitsToFloat(0x7f800000u);
     aovs[at] = vec4(hit ? s.n : vec3(0.0), depth);
     aovs[at + 1u] = vec4(hit ? base.xyz : vec3(0.0), uintBitsToFloat(hit ? s.object : 0u));
     aovs[at + 2u] = vec4(hit ? light : vec3(0.0), uintBitsToFloat(hit ? s.material + 1u : 0u));

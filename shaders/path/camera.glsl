@@ -1,4 +1,4 @@
-// Camera rays (docs/equations.md TR, engine/scene/pose.h): perspective, orthographic, thin lens.
+// Camera rays (docs/equations.md TR, engine/scene/pose.h): perspective, orthographic, equirectangular, thin lens.
 #ifndef ETALON_PATH_CAMERA_GLSL
 #define ETALON_PATH_CAMERA_GLSL
 #include "shaders/lib/sampling.glsl"
@@ -17,13 +17,31 @@ float entry_distance(vec3 origin, vec3 direction)
     return meets && t > 0.0 && t < kMaxFloat ? t : 0.0;
 }
 
+// Uniform over the aperture: the unit disk, or the regular polygon of frame.lens_blades corners in it, the first at +x (TF-7).
+vec2 sample_aperture(vec2 u)
+{
+    if (frame.lens_blades < 3u) return sample_disk(u);
+    // One of the triangles about the centre, and a point of it.
+    float blades = float(frame.lens_blades);
+    float scaled = u.x * blades;
+    float blade = min(floor(scaled), blades - 1.0);
+    vec2 b = sample_triangle(vec2(scaled - blade, u.y));
+    float next = blade + 1.0 < blades ? blade + 1.0 : 0.0;
+    return b.x * cos_sin_turns(blade / blades) + b.y * cos_sin_turns(next / blades);
+}
+
 // The ray through film point `film` (0 … 1, from the top left) and lens point `lens` of the unit disk.
 void camera_ray(vec2 film, vec2 lens, out vec3 origin, out vec3 direction)
 {
     float x = (2.0 * film.x - 1.0) * frame.film_x;
     float y = (1.0 - 2.0 * film.y) * frame.film_y;
     origin = frame.eye;
-    if (kOrthographic) {
+    if (kEquirectangular) {  // (TF-8)
+        vec2 polar = cos_sin_turns(0.5 * film.y);
+        float turn = film.x - 0.5;
+        vec2 around = cos_sin_turns(turn < 0.0 ? turn + 1.0 : turn);
+        direction = polar.y * (around.y * frame.right + around.x * frame.forward) + polar.x * frame.up;
+    } else if (kOrthographic) {
         origin += x * frame.right + y * frame.up;
         direction = frame.forward;
     } else {

@@ -4,7 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/path/camera.glsl"
 #include "shaders/path/queues.glsl"
-#include "shaders/shared/rng.h"
+#include "shaders/path/random.glsl"
 
 layout(local_size_x = kPathWorkgroup) in;
 
@@ -42,15 +42,15 @@ void main()
     split_slot(k, in_order, in_pass);
     uint pixel = pixel_in_strips(in_order);
     uint id = picture_pixel(pixel);
-    uvec4 bits = random_bits(id, push.first_sample + in_pass, 0u, frame.seed);
+    uvec4 bits = path_bits(id, push.first_sample + in_pass, 0u);
     vec2 jitter = kCentres ? vec2(0.5) : vec2(unit_float(bits.x), unit_float(bits.y));
     vec2 lens = vec2(0.0);
-    if (kThinLens && !kCentres) lens = sample_disk(vec2(unit_float(bits.z), unit_float(bits.w)));
+    if (kThinLens && !kCentres) lens = sample_aperture(vec2(unit_float(bits.z), unit_float(bits.w)));
     uvec2 at = uvec2(id % frame.width, id / frame.width);
 
     vec3 origin;
     vec3 direction;
     camera_ray((vec2(at) + jitter) / vec2(frame.width, frame.height), lens, origin, direction);
     store_path(gl_GlobalInvocationID.x,
-               PathState(origin, kNoPrimitive, direction, in_pass * push.pixel_count + pixel, vec3(1.0), -1.0, kNoMedium));
+               PathState(origin, kNoPrimitive, direction, in_pass * push.pixel_count + pixel, vec3(1.0), -1.0, kNoMedium, 0.0));
 }

@@ -86,6 +86,29 @@ float coverage(uint material, float alpha)
     return (flags & kMaterialAlphaBlend) != 0u ? clamp(alpha, 0.0, 1.0) : 1.0;
 }
 
+// (SH-50) F0_d and F90_d of the dielectric part.
+void add_specular(uint layers, vec4 uvs, inout vec3 f0, inout float f90)
+{
+    vec4 factors = load_record(layers, 0u);
+    float ior = load_record(layers, 4u).x;
+    float root = (ior - 1.0) / (ior + 1.0);
+    float f_i = ior == 0.0 ? 1.0 : (ior == 1.5 ? 0.04 : root * root);
+    f90 = factors.w * sample_layer(layers, kSpecularSlot, uvs, false).w;
+    f0 = min(f_i * factors.xyz * sample_layer(layers, kSpecularColorSlot, uvs, true).xyz, 1.0) * f90;
+}
+
+// (SH-70) T: what smooth thin glass lets straight through at a cosine to its geometric normal.
+vec3 passed_by_glass(uint material, vec4 uvs, vec4 color, float cosine)
+{
+    vec3 f0 = vec3(0.04);
+    float f90 = 1.0;
+    if (kSpecular) add_specular(layers_of(material), uvs, f0, f90);
+    float x = clamp(1.0 - cosine, 0.0, 1.0);
+    float most = max_component(f0);
+    float reflected = most + (f90 - most) * ((x * x) * (x * x) * x);
+    return (1.0 - reflected) * base_color(material, uvs, color).xyz;
+}
+
 vec4 uvs_at(uint primitive, vec3 weights)
 {
     vec4 uvs = vec4(0.0);

@@ -16,7 +16,8 @@ layout(set = 0, binding = kBindCounters, std430) buffer Counters { uint counters
 layout(set = 0, binding = kBindRetries, std430) buffer Retries { uint retries[]; };
 
 // Texels of a path in its queue.
-const uint kPathTexels = kVolume ? 4u : 3u;
+const bool kFourthTexel = kVolume || kGlassShadows;
+const uint kPathTexels = kFourthTexel ? 4u : 3u;
 
 // A path on its way: the ray of its current segment, what it carries, and where its light goes.
 struct PathState {
@@ -27,6 +28,7 @@ struct PathState {
     vec3 throughput;
     float pdf;        // density of the direction over solid angle; negative: no light sampling competes with it
     uint medium;      // material of the body that it is in (SH-59), or kNoMedium
+    float reach;      // metres from where the direction was chosen to the origin: what glass is behind (SH-70)
 };
 
 const uint kNoMedium = 0xffffffffu;
@@ -37,9 +39,9 @@ PathState load_path(uint index)
     uvec4 a = imageLoad(paths_in, first);
     uvec4 b = imageLoad(paths_in, first + 1);
     vec4 c = uintBitsToFloat(imageLoad(paths_in, first + 2));
-    uint medium = kNoMedium;
-    if (kVolume) medium = imageLoad(paths_in, first + 3).x;
-    return PathState(uintBitsToFloat(a.xyz), a.w, uintBitsToFloat(b.xyz), b.w, c.xyz, c.w, medium);
+    uvec4 d = uvec4(kNoMedium, 0u, 0u, 0u);
+    if (kFourthTexel) d = imageLoad(paths_in, first + 3);
+    return PathState(uintBitsToFloat(a.xyz), a.w, uintBitsToFloat(b.xyz), b.w, c.xyz, c.w, d.x, uintBitsToFloat(d.y));
 }
 
 void store_path(uint index, PathState path)
@@ -48,7 +50,7 @@ void store_path(uint index, PathState path)
     paths_out[first] = vec4(path.origin, uintBitsToFloat(path.self));
     paths_out[first + 1u] = vec4(path.direction, uintBitsToFloat(path.slot));
     paths_out[first + 2u] = vec4(path.throughput, path.pdf);
-    if (kVolume) paths_out[first + 3u] = vec4(uintBitsToFloat(path.medium), vec3(0.0));
+    if (kFourthTexel) paths_out[first + 3u] = vec4(uintBitsToFloat(path.medium), path.reach, 0.0, 0.0);
 }
 
 uint counter_at(uint iteration, uint which) { return kCountersPerIteration * iteration + which; }

@@ -1,6 +1,7 @@
 // The BSDF of a surface from its material's record, textures and layers (docs/shading.md §2, §2b).
 #ifndef ETALON_PATH_REFLECTION_GLSL
 #define ETALON_PATH_REFLECTION_GLSL
+#include "shaders/lib/absorption.glsl"
 #include "shaders/path/surface.glsl"
 
 vec4 albedo_cell(int index) { return uintBitsToFloat(imageLoad(albedo_cells, index)); }
@@ -29,17 +30,6 @@ Frame shading_frame(Surface s)
         local.y = turned ? cross(s.n, x) : local.y;
     }
     return local;
-}
-
-// (SH-50) F0_d and F90_d of the dielectric part.
-void add_specular(uint layers, vec4 uvs, inout vec3 f0, inout float f90)
-{
-    vec4 factors = load_record(layers, 0u);
-    float ior = load_record(layers, 4u).x;
-    float root = (ior - 1.0) / (ior + 1.0);
-    float f_i = ior == 0.0 ? 1.0 : (ior == 1.5 ? 0.04 : root * root);
-    f90 = factors.w * sample_layer(layers, kSpecularSlot, uvs, false).w;
-    f0 = min(f_i * factors.xyz * sample_layer(layers, kSpecularColorSlot, uvs, true).xyz, 1.0) * f90;
 }
 
 void add_film(uint layers, vec4 uvs, inout Glossy g)
@@ -148,6 +138,8 @@ Glossy make_glossy(Surface s, vec3 base, bool specular_glossiness, Frame local, 
     g.boost = 1.0 + normal_incidence * ((1.0 - seen) / seen);
 
     if (kThroughLobes) add_transmission(layers, s, base, metallic, g);
+    if (kGlassShadows && (s.flags & kPrimitiveGlass) != 0u)
+        g.glass = passed_by_glass(s.material, s.uvs, s.color, abs(dot(s.ng, wo)));
     if (kSheen) add_sheen(layers, s.uvs, cos_o, g);
     if (kClearcoat) add_coat(layers, s, local, wo, g);
     return g;
@@ -171,6 +163,9 @@ Bsdf make_bsdf(Surface s, vec3 base, Frame local, vec3 wo, float cos_o)
     return bsdf;
 }
 
+// (SH-70)
+bool is_glass(Surface s) { return kGlassShadows && (s.flags & kPrimitiveGlass) != 0u; }
+
 // May a sample reflect where the base's normal says that it transmits?
 bool has_coat(Bsdf bsdf) { return kClearcoat && bsdf.model == kModelMetallicRoughness && bsdf.glossy.coat > 0.0; }
 
@@ -188,7 +183,7 @@ vec3 passed_by_medium(uint medium, float distance)
 {
     bool inside = medium != kNoMedium;
     vec3 absorption = load_record(layers_of(inside ? medium : 0u), 2u).xyz;
-    return inside ? exp(-absorption * distance) : vec3(1.0);
+    return inside ? absorbed(absorption, distance) : vec3(1.0);
 }
 
 #endif

@@ -5,6 +5,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/path/queues.glsl"
 #include "shaders/path/lights.glsl"
+#include "shaders/path/random.glsl"
 #include "shaders/path/reflection.glsl"
 
 layout(local_size_x = kPathWorkgroup) in;
@@ -34,7 +35,11 @@ vec3 collect_emission(PathState path, Surface s, uint primitive, float t)
 {
     if (!s.front && (s.flags & kPrimitiveEmitsBack) == 0u) return vec3(0.0);
     float weight = 1.0;
-    if (path.pdf >= 0.0) weight = power_heuristic(path.pdf, emitter_pdf(primitive, s, path.origin, path.direction, t));
+    if (path.pdf >= 0.0) {
+        vec3 from = path.origin;
+        if (kGlassShadows) from -= path.reach * path.direction;
+        weight = power_heuristic(path.pdf, emitter_pdf(primitive, s, from, path.direction, path.reach + t));
+    }
     vec3 value = emission(s.material, s.uvs);
     if (kClearcoat) value *= 1.0 - coat_reflectance(s.material, s.uvs, dot(s.coat_n, path.direction));
     return path.throughput * value * weight;
@@ -85,8 +90,9 @@ void main()
     // Direct light.
     PathState shadow = path;
     bool casts = false;
-    if (!last && scatters && !is_delta(bsdf)) {
-        LightSample light = sample_light(s.position, s.n, random_bits(id, sample_index, 2u * push.iteration + 3u, frame.seed));
+    bool glass = is_glass(s);
+    if (!last && scatters && !is_delta(bsdf) && !glass) {
+        LightSample light = sample_light(s.position, s.n, path_bits(id, sample_index, 2u * push.iteration + 3u));
         vec3 wi_local = to_local(local, light.wi);
         float pdf;
         vec3 value = eval_bsdf(bsdf, wo_local, wi_local, pdf);
@@ -114,13 +120,21 @@ void main()
     bool goes_on = false;
     PathState next = path;
     if (scatters) {
-        uvec4 bits = random_bits(id, sample_index, 2u * push.iteration + 2u, frame.seed);
+        uvec4 bits = path_bits(id, sample_index, 2u * push.iteration + 2u);
         BsdfSample drawn = sample_bsdf(bsdf, wo_local, vec3(unit_float(bits.x), unit_float(bits.y), unit_float(bits.z)));
         next.direction = robust_normalize(to_world(local, drawn.wi));
         next.throughput = path.throughput * drawn.weight;
         next.pdf = drawn.pdf > 0.0 ? drawn.pdf : -1.0;
         next.origin = leave(s, next.direction);
         next.self = self_of(s, primitive, next.direction);
+        next.reach = 0.0;
+        if (glass) {
+            // Glass is no place where light is looked for: what it mirrors is found by chance, what it passes by those before.
+            bool straight = drawn.wi.z < 0.0;
+            next.pdf = straight ? path.pdf : -1.0;
+            next.reach = straight ? path.reach + t : 0.0;
+            next.direction = straight ? path.direction : next.direction;
+        }
         float carried = max_component(next.throughput);
         if (kVolume) next.medium = medium_towards(s, next.direction, path.medium);
         goes_on = carried > 0.0 && (is_consistent(s, next.direction, drawn.wi.z) || has_coat(bsdf));

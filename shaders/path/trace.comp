@@ -96,6 +96,7 @@ int visit_leaf(Ray ray, int node, inout Hit hit)
     uint leaf = here ? uint(~node) : 0u;
     Hit candidate = hit;
     bool met = meet(ray, leaf >> 4, candidate) && here && (leaf & 15u) != 0u;
+    if (kGlassShadows && kShadow && here && (leaf & 15u) != 0u) passed *= passed_here;
     hit.t = met ? candidate.t : hit.t;
     hit.primitive = met ? candidate.primitive : hit.primitive;
     bool more = (leaf & 15u) > 1u;
@@ -143,6 +144,7 @@ void main()
             ++taken;
             node = 0;
             overflowed = false;
+            if (kGlassShadows && kShadow) passed = vec3(1.0);
             for (int i = 0; i < kStack; ++i) stack[i] = kDone;
         }
         if (subgroup_sum(busy ? 1 : 0) == 0) break;

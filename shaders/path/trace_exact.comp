@@ -48,6 +48,7 @@ void main()
             uint leaf = uint(~node);
             bool met = (leaf & 15u) != 0u && meet(ray, leaf >> 4, hit);
             if (kShadow && met) break;
+            if (kGlassShadows && kShadow && (leaf & 15u) != 0u) passed *= passed_here;
             pop = (leaf & 15u) <= 1u;
             node = pop ? node : ~int(leaf + 15u);
         }

@@ -31,7 +31,9 @@ void store_result(uint index, Hit hit)
 {
     if (kShadow) {
         uvec4 c = imageLoad(shadows_in, int(3u * index + 2u));
-        if (hit.primitive == kNoPrimitive) radiance[c.w].xyz += uintBitsToFloat(c.xyz);
+        vec3 light = uintBitsToFloat(c.xyz);
+        if (kGlassShadows) light *= passed;
+        if (hit.primitive == kNoPrimitive) radiance[c.w].xyz += light;
     } else {
         hits_out[index] = hit.primitive;  // one word: where exactly is computed again where it is shaded
     }

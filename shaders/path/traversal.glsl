@@ -59,6 +59,19 @@ bool is_there(Ray ray, uint primitive, uint flags, float u, float v)
     return unit_float(pcg4d(uvec4(ray.alpha_key, primitive, frame.seed, 0x5eed0a1fu)).x) < covered;
 }
 
+// (SH-70) What glass lets through, of a shadow ray so far and at the last test.
+vec3 passed = vec3(1.0);
+vec3 passed_here = vec3(1.0);
+
+vec3 passed_by_primitive(Ray ray, PrimitiveData data, uint primitive, Meeting m)
+{
+    vec3 n = cross(data.p1 - data.p0, data.p2 - data.p0);
+    if (kSpheres && (data.flags & kPrimitiveSphere) != 0u) n = ray.frame.origin + m.t * ray.direction - data.p0;
+    vec3 w = vec3(1.0 - m.u - m.v, m.u, m.v);
+    float cosine = abs(dot(robust_normalize(n), robust_normalize(ray.direction)));
+    return passed_by_glass(data.flags & kPrimitiveMaterial, uvs_at(primitive, w), color_at(primitive, w), cosine);
+}
+
 // Tests one primitive; `hit` is replaced where it is met closer.
 bool meet(Ray ray, uint primitive, inout Hit hit)
 {
@@ -67,6 +80,11 @@ bool meet(Ray ray, uint primitive, inout Hit hit)
     bool culled = (data.flags & kPrimitiveCulled) != 0u;
     bool met = m.met && m.t < hit.t && primitive != ray.self && !(culled && !m.front);
     if (kAlpha && met && (data.flags & kPrimitiveAlpha) != 0u) met = is_there(ray, primitive, data.flags, m.u, m.v);
+    if (kGlassShadows && kShadow) {
+        bool glass = met && (data.flags & kPrimitiveGlass) != 0u;
+        passed_here = glass ? passed_by_primitive(ray, data, primitive, m) : vec3(1.0);
+        met = met && !glass;
+    }
     hit.t = met ? m.t : hit.t;
     hit.primitive = met ? primitive : hit.primitive;
     return met;

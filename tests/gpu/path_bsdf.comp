@@ -18,6 +18,7 @@ const bool kIridescence = false;
 const bool kAnisotropy = false;
 const bool kDispersion = false;
 const bool kDiffuseTransmission = false;
+const bool kGlassShadows = false;
 vec4 albedo_cell(int index) { return vec4(1.0); }
 #include "shaders/lib/bsdf.glsl"
 #include "shaders/shared/rng.h"

@@ -13,6 +13,7 @@ const bool kIridescence = true;
 const bool kAnisotropy = true;
 const bool kDispersion = true;
 const bool kDiffuseTransmission = true;
+const bool kGlassShadows = true;
 vec4 albedo_cell(int index) { return vec4(kTestAlbedo); }
 #include "shaders/lib/glossy.glsl"
 #include "shaders/shared/rng.h"
@@ -29,7 +30,7 @@ void main()
     const Glossy g = Glossy(row.diffuse, row.f0, row.hat0, row.f90, row.boost, row.alpha, row.alphas, row.film, row.film_ior,
                             row.film_nanometres, row.film_base, row.film_specular, row.film_metal, row.metallic,
                             row.diffuse_through, row.through, row.body != 0u, row.excess, row.inner, row.sheen,
-                            row.sheen_roughness, seen, row.coat, row.coat_alpha, row.coat_n, row.ng);
+                            row.sheen_roughness, seen, row.coat, row.coat_alpha, row.coat_n, row.ng, vec3(0.0));
     GlossyResult result;
     result.wi = row.wi;
     if (row.sampled != 0u) {

@@ -2,6 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "tests/gpu/device_kernel.glsl"
+#include "shaders/lib/absorption.glsl"
 #include "shaders/lib/fresnel.glsl"
 #include "shaders/lib/ggx.glsl"
 #include "shaders/lib/numeric.glsl"
@@ -48,6 +49,9 @@ vec4 call(LibCall row)
             return vec4(triangle.t, triangle.u, triangle.v, (triangle.hit ? 1.0 : 0.0) + (triangle.front ? 2.0 : 0.0));
         case kGgx: return vec4(ggx_d(a.xyz, a.w), ggx_v_correlated(b.x, b.y, a.w), ggx_g1(b.x, a.w), 0.0);
         case kVndf: return vec4(sample_ggx_vndf(a.xyz, a.w, b.xy), 0.0);
+        case kAbsorbed:
+            // A distance that the compiler knows, and one that it does not.
+            return vec4(absorbed(a.xyz, a.w > 0.0 ? a.w : kMaxFloat).xy, absorbed(a.xyz, kMaxFloat).xy);
         case kCosine: return vec4(sample_cosine_hemisphere(a.xy), 0.0);
     }
     return vec4(0.0);

@@ -20,6 +20,7 @@ ETALON_CONSTANT uint kTriangle = 12u;  // corners with the origin in w, directio
 ETALON_CONSTANT uint kGgx = 13u;       // (h, alpha), (cosine i, cosine o)
 ETALON_CONSTANT uint kVndf = 14u;      // (wo, alpha), u
 ETALON_CONSTANT uint kCosine = 15u;    // u
+ETALON_CONSTANT uint kAbsorbed = 16u;  // (absorption, distance; 0: infinitely far)
 
 struct LibCall {
     uint function;

@@ -362,6 +362,22 @@ TEST_F(PathLib, S15_visible_normals_are_unit_upright_and_seen_from_wo)
     }
 }
 
+// 3 of 2.5 million samples of the Khronos asset TransmissionRoughnessTest were NaN: rays that leaked out of a body
+// which absorbs nothing, towards the sky. Their distance times exp's log2(e) is infinite.
+TEST_F(PathLib, SH_59_what_absorbs_nothing_does_so_infinitely_far)
+{
+    std::vector<LibCall> rows{
+        row(shared::kAbsorbed, vec4(0.f, -0.f, 0.f, 0)), row(shared::kAbsorbed, vec4(0.f, 0.f, 0.f, 3e38f)),
+        row(shared::kAbsorbed, vec4(1e-30f, 1e30f, 0.f, 0)), row(shared::kAbsorbed, vec4(0.5f, 2.f, 0.f, 1.5f))};
+    const std::vector<vec4> got = call(rows);
+    EXPECT_EQ(got[0], vec4(1));
+    EXPECT_EQ(got[1], vec4(1));
+    EXPECT_EQ(got[2], vec4(0));
+    EXPECT_NEAR(got[3].x, std::exp(-0.75), 1e-5);
+    EXPECT_NEAR(got[3].y, std::exp(-3.0), 1e-5);
+    EXPECT_EQ(got[3].z, 0);
+}
+
 TEST_F(PathLib, S18_cosine_samples_never_lie_on_the_horizon)
 {
     std::vector<LibCall> rows;

@@ -53,6 +53,57 @@ TEST_F(PathPicture, R17_reading_early_other_passes_and_another_view_in_between_c
     EXPECT_TRUE(same_film(once, tracer.film()));
 }
 
+TEST_F(PathPicture, R17_a_film_goes_on_from_its_state_in_another_tracer_to_the_same_bits)
+{
+    const Scene scene = make_builtin("cornell");
+    PoseSettings pose_settings;
+    pose_settings.size = ivec2(21, 13);
+    const PosedScene posed = pose(scene, pose_settings);
+    const RenderSettings how = settings(300);
+    const Film once = render_path(device(), posed, require(posed, how), how, {});
+    FilmState last;
+    for (const std::uint64_t stop : {3u, 256u, 270u, 300u}) {  // within a block, at its end, in the next
+        RenderSettings part = how;
+        part.spp = stop;
+        const FilmState from = last;
+        const Checkpoints checkpoints{.from = from.samples > 0 ? &from : nullptr,
+                                      .keep = [&](const FilmState& state) { last = state; },
+                                      .seconds = 0};
+        const Film film = render_path(device(), posed, require(posed, part), part, {}, checkpoints);
+        EXPECT_EQ(last.samples, stop);
+        EXPECT_EQ(same_film(once, film), stop == 300);
+    }
+    PoseSettings larger;
+    larger.size = ivec2(22, 13);
+    const PosedScene other = pose(scene, larger);
+    EXPECT_THROW(render_path(device(), other, require(other, how), how, {}, {.from = &last}), Error);
+    RenderSettings fewer = how;
+    fewer.spp = 299;
+    EXPECT_THROW(render_path(device(), posed, require(posed, fewer), fewer, {}, {.from = &last}), Error);
+}
+
+TEST_F(PathPicture, R17_shards_have_the_bits_of_their_rows)
+{
+    const Scene scene = make_builtin("cornell");
+    RenderSettings how = settings(5);
+    how.aovs = true;
+    const ivec2 size(21, 23);
+    const Film whole = render(scene, how, size);
+    Film together;
+    for (how.shard = {.number = 1, .count = 3}; how.shard.number <= 3; ++how.shard.number) {
+        const Film part = render(scene, how, size);
+        EXPECT_EQ(part.height, how.shard.end_row(23) - how.shard.first_row(23));
+        together.mean.insert(together.mean.end(), part.mean.begin(), part.mean.end());
+        together.variance.insert(together.variance.end(), part.variance.begin(), part.variance.end());
+        together.alpha.insert(together.alpha.end(), part.alpha.begin(), part.alpha.end());
+        together.aovs.depth.insert(together.aovs.depth.end(), part.aovs.depth.begin(), part.aovs.depth.end());
+    }
+    EXPECT_TRUE(same_film(whole, together));
+    EXPECT_EQ(whole.aovs.depth, together.aovs.depth);
+    how.shard = {.number = 1, .count = 24};
+    EXPECT_THROW(render(scene, how, size), Error);
+}
+
 TEST_F(PathPicture, R1_scaling_the_world_by_a_power_of_two_changes_no_bit)
 {
     const auto room = [](double s) {

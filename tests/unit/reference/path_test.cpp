@@ -164,6 +164,50 @@ TEST(ReferencePath, a_stopped_picture_keeps_whole_passes_and_equals_a_shorter_on
     EXPECT_EQ(stopped.variance, whole.variance);
 }
 
+TEST(ReferencePath, goes_on_from_its_state_to_the_same_bits)
+{
+    const Scene scene = make_builtin("cornell");
+    const PosedScene posed = pose(scene, {.size = ivec2(12, 9)});
+    RenderSettings settings;
+    settings.renderer = Renderer::reference;
+    settings.spp = 11;
+    const Film once = render_path(posed, require(posed, settings), settings, {});
+    FilmState state;
+    const auto keep = [&](const FilmState& s) { state = s; };
+    settings.spp = 4;
+    render_path(posed, require(posed, settings), settings, {}, {.keep = keep});
+    EXPECT_EQ(state.samples, 4u);
+    settings.spp = 11;
+    const FilmState from = state;
+    const Film resumed = render_path(posed, require(posed, settings), settings, {}, {.from = &from, .keep = keep});
+    EXPECT_EQ(once.mean, resumed.mean);
+    EXPECT_EQ(once.variance, resumed.variance);
+    EXPECT_EQ(once.truncated, resumed.truncated);
+    EXPECT_EQ(state.samples, 11u);
+    const PosedScene other = pose(scene, {.size = ivec2(12, 8)});
+    EXPECT_THROW(render_path(other, require(other, settings), settings, {}, {.from = &from}), Error);
+}
+
+TEST(ReferencePath, shards_have_the_bits_of_their_rows)
+{
+    const Scene scene = make_builtin("cornell");
+    RenderSettings settings;
+    settings.spp = 3;
+    settings.aovs = true;
+    const Film whole = render(scene, settings, ivec2(20, 37));
+    std::vector<vec3> mean, variance, normal;
+    for (unsigned i = 1; i <= 5; ++i) {
+        settings.shard = {.number = i, .count = 5};
+        const Film part = render(scene, settings, ivec2(20, 37));
+        mean.insert(mean.end(), part.mean.begin(), part.mean.end());
+        variance.insert(variance.end(), part.variance.begin(), part.variance.end());
+        normal.insert(normal.end(), part.aovs.normal.begin(), part.aovs.normal.end());
+    }
+    EXPECT_EQ(whole.mean, mean);
+    EXPECT_EQ(whole.variance, variance);
+    EXPECT_EQ(whole.aovs.normal, normal);
+}
+
 TEST(ReferencePath, a_stop_before_the_first_pass_still_gives_one_sample)
 {
     const std::atomic<bool> stop = true;

@@ -234,6 +234,48 @@ TEST(View, keeps_the_height_of_an_orthographic_view_whatever_the_picture_is_wide
     EXPECT_EQ(view.camera.xmag, 12);
 }
 
+TEST(View, TF_7_gets_a_lens_from_an_f_stop_focused_on_the_centre_or_where_it_is_told)
+{
+    const Scene scene = one_box();
+    PoseSettings settings;
+    settings.orbit =
+        Orbit{.azimuth = 0, .elevation = 0, .distance = 12, .target = {}, .yfov = 2 * std::atan(0.5) * 180 / kPi};
+    settings.lens = LensSettings{.f_stop = 2, .focus = {}, .blades = 6};
+    const Camera camera = pose(scene, settings).view.camera;  // focal length 24 mm: the film's height
+    ASSERT_TRUE(camera.lens.has_value());
+    EXPECT_NEAR(camera.lens->aperture_radius, 0.006, 1e-12);
+    EXPECT_NEAR(camera.lens->focus_distance, 12, 1e-9);
+    EXPECT_EQ(camera.lens->blades, 6);
+    settings.lens->focus = 3;
+    EXPECT_EQ(pose(scene, settings).view.camera.lens->focus_distance, 3);
+    for (const LensSettings& bad : {LensSettings{.f_stop = 0, .focus = 1}, LensSettings{.f_stop = 2, .focus = -1},
+                                    LensSettings{.f_stop = NAN, .focus = 1}, LensSettings{.f_stop = 2, .blades = -1}}) {
+        settings.lens = bad;
+        EXPECT_THROW(pose(scene, settings), Error);
+    }
+    settings.lens = LensSettings{};
+    settings.projection = Projection::equirectangular;
+    EXPECT_THROW(pose(scene, settings), Error) << "a camera that sees all around has no lens";
+}
+
+TEST(View, projects_orthographically_as_large_as_perspective_shows_the_centre)
+{
+    const Scene scene = one_box();
+    PoseSettings settings;
+    settings.size = ivec2(200, 100);
+    settings.orbit = Orbit{.azimuth = 30, .elevation = 20, .distance = 12, .target = {}, .yfov = {}};
+    const View perspective = pose(scene, settings).view;
+    settings.projection = Projection::orthographic;
+    const View view = pose(scene, settings).view;
+    EXPECT_TRUE(view.camera.orthographic);
+    // A point beside the centre, across the axis, is at the same place in both.
+    const dvec3 beside =
+        dvec3(5, 6, 7) + 0.3 * dvec3(view.world_from_camera[0]) + 0.2 * dvec3(view.world_from_camera[1]);
+    EXPECT_LT(length(film_point(view, beside) - film_point(perspective, beside)), 1e-12);
+    settings.projection = Projection::equirectangular;
+    EXPECT_TRUE(pose(scene, settings).view.camera.equirectangular);
+}
+
 TEST(View, takes_its_size_from_the_settings_then_the_scene_then_the_standard)
 {
     Scene scene = one_box();

@@ -4,6 +4,7 @@
 
 #include <functional>
 
+#include "engine/base/error.h"
 #include "engine/scene/builder.h"
 #include "engine/scene/load.h"
 #include "engine/scene/requirements.h"
@@ -222,6 +223,17 @@ TEST(Requirements, of_each_built_in_scene_have_names_and_causes)
     }
 }
 
+TEST(Requirements, TF_8_rasterizers_refuse_to_see_all_around)
+{
+    const Scene scene = make_builtin("triangle");
+    PoseSettings view;
+    view.projection = Projection::equirectangular;
+    const PosedScene posed = pose(scene, view);
+    for (const Renderer renderer : {Renderer::raster, Renderer::reference_raster})
+        EXPECT_THROW(require(posed, {.renderer = renderer}), Error);
+    EXPECT_TRUE(require(posed, {.renderer = Renderer::path}).has(Feature::equirectangular));
+}
+
 TEST(Requirements, every_feature_is_exercised_by_some_built_in_scene)
 {
     std::bitset<kFeatureCount> seen;
@@ -232,7 +244,9 @@ TEST(Requirements, every_feature_is_exercised_by_some_built_in_scene)
             settings.shading = row.name == "blinn-phong" ? Shading::blinn_phong : Shading::pbr;
             settings.aovs = row.name == "triangle";
             const Scene scene = make_builtin(row.name);
-            seen |= require(pose(scene), settings).bits;
+            PoseSettings view;
+            if (renderer == Renderer::path && row.name == "furnace") view.projection = Projection::equirectangular;
+            seen |= require(pose(scene, view), settings).bits;
         }
     for (std::size_t i = 0; i < kFeatureCount; ++i) EXPECT_TRUE(seen[i]) << name(static_cast<Feature>(i));
 }
