@@ -255,7 +255,7 @@ PathResult PathTracer::trace(const dvec2& film, const PathRandom& random) const
         by_delta = scattered->delta;
         ray_pdf = scattered->pdf;
         if (russian_roulette_ && depth >= kFirstRoulette) {  // (MC-4)
-            const double survive = std::clamp(max_channel(throughput) * spread, 0.05, 1.0);
+            const double survive = std::clamp(3 * max_channel(throughput) * spread, 0.05, 1.0);
             if (lobe.y >= survive) return result;
             throughput /= survive;
         }

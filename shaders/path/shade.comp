@@ -139,7 +139,7 @@ void main()
         if (kVolume) next.medium = medium_towards(s, next.direction, path.medium);
         goes_on = carried > 0.0 && (is_consistent(s, next.direction, drawn.wi.z) || has_coat(bsdf));
         if (frame.roulette != 0u && push.iteration >= kRouletteAfter && !last) {
-            float survival = clamp(carried, 0.05, 1.0);  // (MC-4)
+            float survival = clamp(3.0 * carried, 0.05, 1.0);  // (MC-4)
             goes_on = goes_on && unit_float(bits.w) < survival;
             next.throughput /= survival;
         }
