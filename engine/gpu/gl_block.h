@@ -2,6 +2,7 @@
 // Inside engine/gpu only: blocks of memory as OpenGL lays them out.
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -36,8 +37,38 @@ struct BlockLayout {
 
 enum class BlockRules { std140, std430 };
 
-/// Redecorates a block's type so that SPIRV-Cross writes it by `rules`, and says what that does to its bytes. Throws
-/// Error(input) naming what cannot be: row-major matrices, arrays of arrays.
-BlockLayout lay_out(const SpirvModule& module, spvc_type_id block, BlockRules rules);
+/// Lays out the blocks of one module anew. Types are redecorated so that SPIRV-Cross writes them by the new rules; what
+/// they said before is remembered, because a type may be met again in another member or block.
+class BlockLayouts {
+ public:
+    explicit BlockLayouts(const SpirvModule& module) : module_(module) {}
+
+    /// Of the block of this type, and what that does to its bytes. Throws Error(input) for what cannot be: row-major
+    /// matrices, arrays of arrays, one struct under both rules.
+    BlockLayout lay_out(spvc_type_id block, BlockRules rules);
+
+ private:
+    /// A type in the new layout: where its pieces go, from its own start.
+    struct Laid {
+        BlockRules rules = BlockRules::std430;
+        std::uint32_t alignment = 1;
+        std::uint32_t from_size = 0;
+        std::uint32_t to_size = 0;
+        std::vector<BlockPiece> pieces;
+    };
+    struct Member;
+
+    Laid lay_members(spvc_type_id id, BlockRules rules, BlockLayout* runtime);
+    const Laid& lay_struct(spvc_type_id id, BlockRules rules);
+    Member lay_member(spvc_type_id owner, unsigned index, BlockRules rules);
+    Laid lay_element(spvc_type_id owner, unsigned index, BlockRules rules);
+    static void append(std::vector<BlockPiece>& out, const std::vector<BlockPiece>& pieces, std::uint32_t from,
+                       std::uint32_t to);
+
+    const SpirvModule& module_;
+    std::map<spvc_type_id, BlockLayout> blocks_;
+    std::map<spvc_type_id, Laid> structs_;
+    std::map<spvc_type_id, unsigned> from_strides_;  // of array types
+};
 
 }  // namespace etalon::gpu

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "engine/base/memory.h"
+#include "engine/gl/handle.h"
 #include "engine/gpu/device_state.h"
 #include "engine/gpu/gl_format.h"
 
@@ -44,6 +45,39 @@ std::uint32_t samples_of(const gl::Functions& gl, GLenum format)
     return bits;
 }
 
+/// Vulkan's standard positions of 2, 4, 8 and 16 samples (1.3, §25.3), x and y in sixteenths of a pixel; those of n
+/// begin at n - 2. Shaders rely on them.
+constexpr std::array<std::array<int, 2>, 30> kStandardSamples{{
+    {12, 12}, {4, 4},                                                            // 2
+    {6, 2},   {14, 6}, {2, 10}, {10, 14},                                        // 4
+    {9, 5},   {7, 11}, {13, 9}, {5, 3},   {3, 13}, {1, 7},   {11, 15}, {15, 1},  // 8
+    {9, 9},   {7, 5},  {5, 10}, {12, 7},  {3, 6},  {10, 13}, {13, 11}, {11, 3},  // 16
+    {6, 14},  {8, 1},  {4, 2},  {2, 12},  {0, 8},  {15, 4},  {14, 15}, {1, 0},
+}};
+
+/// Whether targets of so many samples a pixel take them where Vulkan does.
+bool samples_where_vulkan_does(const gl::Functions& gl, GLsizei samples)
+{
+    GLuint name = 0;
+    gl.CreateTextures(GL_TEXTURE_2D_MULTISAMPLE, 1, &name);
+    const gl::Texture texture(gl, name);
+    gl.TextureStorage2DMultisample(name, samples, GL_RGBA32F, 1, 1, GL_TRUE);
+    gl.CreateFramebuffers(1, &name);
+    const gl::Framebuffer framebuffer(gl, name);
+    gl.NamedFramebufferTexture(name, GL_COLOR_ATTACHMENT0, texture.get(), 0);
+    gl.BindFramebuffer(GL_FRAMEBUFFER, name);
+    bool same = true;
+    for (GLsizei i = 0; i < samples; ++i) {
+        GLfloat at[2] = {};
+        gl.GetMultisamplefv(GL_SAMPLE_POSITION, static_cast<GLuint>(i), at);
+        for (std::size_t axis = 0; axis < 2; ++axis)
+            same &=
+                at[axis] * 16 == static_cast<float>(kStandardSamples[static_cast<std::size_t>(samples - 2 + i)][axis]);
+    }
+    gl.BindFramebuffer(GL_FRAMEBUFFER, 0);
+    return same;
+}
+
 DeviceLimits query_limits(const gl::Functions& gl)
 {
     DeviceLimits limits;
@@ -67,7 +101,10 @@ DeviceLimits query_limits(const gl::Functions& gl)
     }
     limits.workgroup_invocations = limit(gl, GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS);
     limits.workgroup_memory = limit(gl, GL_MAX_COMPUTE_SHARED_MEMORY_SIZE);
-    limits.samples = samples_of(gl, GL_RGBA32F) & samples_of(gl, GL_DEPTH_COMPONENT32F);
+    limits.samples = samples_of(gl, GL_RGBA32F) & samples_of(gl, GL_DEPTH_COMPONENT32F) & 31;
+    for (std::uint32_t count = 2; count <= 16; count *= 2)
+        if ((limits.samples & count) != 0 && !samples_where_vulkan_does(gl, static_cast<GLsizei>(count)))
+            limits.samples &= ~count;
     limits.subpixel_bits = limit(gl, GL_SUBPIXEL_BITS);
     if (has_extension(gl, "GL_EXT_texture_filter_anisotropic") ||
         has_extension(gl, "GL_ARB_texture_filter_anisotropic")) {

@@ -102,7 +102,7 @@ class Translation {
     {
         for (const spvc_reflected_resource& block : module_.list(list)) {
             GlResource found = resource(kind, block.id);
-            found.layout = lay_out(module_, block.base_type_id, rules);
+            found.layout = layouts_.lay_out(block.base_type_id, rules);
             found.writes = kind == GlResourceKind::storage_buffer && !is_read_only(block.id);
             if (found.writes && !found.layout.is_identity())
                 throw Error(Blame::machine,
@@ -136,6 +136,7 @@ class Translation {
     }
 
     SpirvModule module_;
+    BlockLayouts layouts_{module_};
     GlUnits& units_;
     const char* prefix_;
     GlStage stage_;

@@ -63,6 +63,7 @@ std::uint32_t texel_size(VkFormat format)
         case VK_FORMAT_R8G8_UNORM:
         case VK_FORMAT_R16_UINT:
         case VK_FORMAT_R16_SFLOAT:
+        case VK_FORMAT_D16_UNORM:
             return 2;
         case VK_FORMAT_R8G8B8A8_UNORM:
         case VK_FORMAT_R8G8B8A8_SRGB:
@@ -73,6 +74,7 @@ std::uint32_t texel_size(VkFormat format)
         case VK_FORMAT_R32_SINT:
         case VK_FORMAT_R32_SFLOAT:
         case VK_FORMAT_D32_SFLOAT:
+        case VK_FORMAT_X8_D24_UNORM_PACK32:
             return 4;
         case VK_FORMAT_R16G16B16A16_UNORM:
         case VK_FORMAT_R16G16B16A16_SFLOAT:

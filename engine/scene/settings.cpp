@@ -21,7 +21,7 @@ std::string_view label(Renderer renderer)
 {
     switch (renderer) {
         case Renderer::raster:
-            return "Vulkan rasterizer";
+            return "rasterizer";
         case Renderer::path:
             return "Vulkan path tracer";
         case Renderer::reference:

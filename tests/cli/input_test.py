@@ -122,12 +122,50 @@ class Devices(Case):
     def test_without_a_vulkan_device_the_vulkan_renderers_end_with_3_and_reasons(self):
         env = environment(**NO_VULKAN)
         for renderer in ("raster", "path"):
-            run = self.run_etalon("render", "builtin:triangle", "--renderer", renderer, "-o", self.path("x.png"), "--json", code=3, env=env)
+            run = self.run_etalon("render", "builtin:triangle", "--renderer", renderer, "--backend", "vulkan", "-o", self.path("x.png"), "--json",
+                                  code=3, env=env)
             self.assertIn("Vulkan", run.err)
             self.assertEqual(run.json["error"]["exit_code"], 3)
         self.run_etalon("compare", "builtin:triangle", "-o", self.path("out"), code=3, env=env)
-        self.run_etalon("info", code=3, env=env)
         self.assert_only()
+
+    def test_without_vulkan_the_rasterizer_draws_by_opengl_and_says_so(self):
+        os.mkdir(self.path("libraries"))
+        self.hide("libvulkan.so", "libvulkan.so.1")
+        for env in (environment(**NO_VULKAN), environment(LD_LIBRARY_PATH=self.path("libraries"))):
+            run = self.run_etalon("render", "builtin:triangle", "--size", "16x16", "--json", "-o", self.path("x.png"), env=env)
+            self.assertIn("OpenGL", run.out.decode())
+            document = self.run_etalon("info", "--json", env=env).json
+            works = {backend["name"]: backend["works"] for backend in document["backends"]}
+            self.assertEqual(works, {"vulkan": False, "opengl": True, "reference": True})
+
+    def test_without_vulkan_and_opengl_both_are_said(self):
+        os.mkdir(self.path("libraries"))
+        self.hide("libvulkan.so", "libvulkan.so.1", "libEGL.so.1", "libOSMesa.so.8")
+        env = environment(LD_LIBRARY_PATH=self.path("libraries"))
+        run = self.run_etalon("render", "builtin:triangle", "-o", self.path("x.png"), code=3, env=env)
+        for word in ("Vulkan loader", "libEGL.so.1", "libOSMesa.so.8"):
+            self.assertIn(word, run.err)
+        self.run_etalon("info", code=3, env=env)
+        self.run_etalon("render", "builtin:triangle", "--renderer", "reference", "--spp", "2", "--size", "16x16", "-o", self.path("y.png"), env=env)
+        self.assert_only("libraries", "y.png")
+
+    def test_where_there_is_no_egl_osmesa_draws(self):
+        os.mkdir(self.path("libraries"))
+        self.hide("libEGL.so.1")
+        run = self.run_etalon("render", "builtin:triangle", "--backend", "opengl", "--size", "16x16", "--json", "-o", self.path("x.png"),
+                              env=environment(LD_LIBRARY_PATH=self.path("libraries")))
+        self.assertIn("OSMesa", run.out.decode())
+
+    def test_the_path_tracer_does_not_draw_by_opengl(self):
+        run = self.run_etalon("render", "builtin:triangle", "--renderer", "path", "--backend", "opengl", "-o", self.path("x.png"), code=2)
+        self.assertIn("Vulkan alone", run.err)
+        self.assert_only()
+
+    def hide(self, *libraries):
+        """Files that the loader finds first and cannot open."""
+        for name in libraries:
+            self.write(os.path.join("libraries", name), b"")
 
     def test_without_a_vulkan_device_the_reference_still_works(self):
         self.run_etalon("render", "builtin:triangle", "--renderer", "reference", "--spp", "2", "--size", "16x16", "-o", self.path("x.png"),
@@ -138,7 +176,7 @@ class Devices(Case):
         os.mkdir(self.path("libraries"))
         for name in ("libvulkan.so", "libvulkan.so.1"):
             self.write(os.path.join("libraries", name), b"")
-        run = self.run_etalon("render", "builtin:triangle", "-o", self.path("x.png"), code=3,
+        run = self.run_etalon("render", "builtin:triangle", "--backend", "vulkan", "-o", self.path("x.png"), code=3,
                               env=environment(LD_LIBRARY_PATH=self.path("libraries")))
         self.assertIn("loader", run.err)
         self.assert_only("libraries")
