@@ -213,8 +213,7 @@ dvec3 RasterSurface::surroundings() const
     dvec3 sum = environment() + behind();
     if (layers_.sheen_color != dvec3(0)) {
         sum *= below_sheen(sheen_seen_);
-        sum += occlusion_ * std::min(sheen_seen_, 1.0) * layers_.sheen_color *
-               e.prefiltered(reflection(place_.wo, place_.n), layers_.sheen_roughness);
+        sum += occlusion_ * std::min(sheen_seen_, 1.0) * layers_.sheen_color * e.irradiance(place_.n) / kPi;
     }
     if (coat_weight_ == 0) return sum;
     return (1 - coat_weight_) * sum +

@@ -253,7 +253,9 @@ double RasterShader::lit_share(const Fragment& fragment, const PosedLight& light
 {
     if (!shadows_ || in.irradiance == dvec3(0)) return 1;
     const dvec3 ng = fragment.ng == dvec3(0) ? in.wi : fragment.ng;
-    const dvec3 error(1e-9 * (length(fragment.position) + 1));
+    // Vertices are floats: a point extrapolated past an edge (SH-30) lies that much below a neighbour that is meant to
+    // be in the same plane. A thousandth of a pixel hides it.
+    const dvec3 error(1e-6 * std::abs(camera_.depth(fragment.position)));
     const dvec3 origin = offset_origin(fragment.position, error, ng, in.wi);
     const bool far = std::isinf(in.distance);
     const Ray ray{.origin = origin,

@@ -145,9 +145,12 @@ void RasterScene::add_albedo()
         any |= own || variants_.is_glossy(material);
         sheen |= own && material.layers && material.layers->sheen_color != dvec3(0);
     }
-    const std::vector<vec4> cells =
-        any ? timed(times_, "albedo", [&] { return make_raster_albedo_cells(sheen, settings_.threads); })
-            : std::vector<vec4>{vec4(1)};
+    const bool reflects = !posed_.environment.is_black();
+    const auto make = [&] {
+        return reflects ? make_raster_albedo_cells(sheen, settings_.threads)
+                        : make_albedo_cells(sheen, settings_.threads);
+    };
+    const std::vector<vec4> cells = any ? timed(times_, "albedo", make) : std::vector<vec4>{vec4(1)};
     albedo_ = gpu::make_buffer(device_, cells, "albedo");
 }
 

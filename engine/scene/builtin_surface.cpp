@@ -333,6 +333,7 @@ Scene siemens_star()
     star.normals.assign(star.positions.size(), vec3(0, 0, 1));
     build.show("black", make_rectangle(dvec3(0, 0, -0.1), dvec3(1, 0, 0), dvec3(0, 1, 0)), flat("black", 0));
     build.show("spokes", std::move(star), flat("white", 1));
+    build.environment(sky(0));  // dark: nothing here is lit
     Camera camera;
     camera.name = "front";
     camera.orthographic = true;

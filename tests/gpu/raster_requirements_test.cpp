@@ -23,7 +23,7 @@ constexpr ivec2 kSize(48, 36);
 /// Features that a rasterizer has nothing to do for.
 bool is_for_path_tracers(Feature feature)
 {
-    return feature == Feature::thin_lens;
+    return feature == Feature::thin_lens || feature == Feature::equirectangular;
 }
 
 bool same(const Film& a, const Film& b)
@@ -126,7 +126,7 @@ TEST_F(RasterRequirements, a_material_whose_model_was_not_required_is_refused)
     EXPECT_THROW(render(posed, nothing, {}), Error);
 }
 
-TEST_F(RasterRequirements, other_sample_counts_than_1_and_4_are_refused)
+TEST_F(RasterRequirements, sample_counts_that_are_no_power_of_two_are_refused)
 {
     const Scene scene = make_builtin("triangle");
     const PosedScene posed = pose(scene, {.size = kSize});
