@@ -26,7 +26,7 @@ Ray CameraRays::in_world(const dvec3& origin, const dvec3& direction) const
 Ray CameraRays::pinhole(const dvec2& film) const
 {
     const dvec2 at(2 * film.x / size_.x - 1, 1 - 2 * film.y / size_.y);
-    if (equirectangular_) {  // (TF-8)
+    if (equirectangular_) {  // (TF-9)
         const double longitude = kPi * at.x, polar = kPi / 2 * (1 - at.y);
         return in_world(dvec3(0), dvec3(std::sin(longitude) * std::sin(polar), std::cos(polar),
                                         -std::cos(longitude) * std::sin(polar)));

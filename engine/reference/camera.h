@@ -18,7 +18,7 @@ class CameraRays {
     /// The film position, pixels, at which a world point is seen by the middle of the lens; nothing where it is not in
     /// front.
     std::optional<dvec2> film_of(const dvec3& p) const;
-    /// A point of the aperture, uniform: of the unit disk, or of the polygon that the blades make in it (TF-7).
+    /// A point of the aperture, uniform: of the unit disk, or of the polygon that the blades make in it (TF-8).
     dvec2 sample_aperture(const dvec2& u) const;
     bool has_lens() const { return lens_.aperture_radius > 0; }
 

@@ -80,7 +80,7 @@ struct Orbit {
 
 /// A lens put before whatever camera is chosen.
 struct LensSettings {
-    double f_stop = 8;            ///< focal length / diameter; focal length as of a film 24 mm high (TF-7)
+    double f_stop = 8;            ///< focal length / diameter; focal length as of a film 24 mm high (TF-8)
     std::optional<double> focus;  ///< metres along the axis; the centre of the scene's bounds when absent
     int blades = 0;               ///< as ThinLens::blades
 };

@@ -87,7 +87,7 @@ View orbit_view(const Orbit& orbit, const Subject& subject, ivec2 size)
     return view;
 }
 
-/// (TF-7) The radius of an aperture at `f_stop`, on a film of kFilmHeight.
+/// (TF-8) The radius of an aperture at `f_stop`, on a film of kFilmHeight.
 constexpr double kFilmHeight = 0.024;  // metres: of the 36 mm x 24 mm that f-stops are commonly thought of on
 
 ThinLens thin_lens(const LensSettings& lens, const View& view, const Subject& subject)

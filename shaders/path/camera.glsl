@@ -17,7 +17,7 @@ float entry_distance(vec3 origin, vec3 direction)
     return meets && t > 0.0 && t < kMaxFloat ? t : 0.0;
 }
 
-// Uniform over the aperture: the unit disk, or the regular polygon of frame.lens_blades corners in it, the first at +x (TF-7).
+// Uniform over the aperture: the unit disk, or the regular polygon of frame.lens_blades corners in it, the first at +x (TF-8).
 vec2 sample_aperture(vec2 u)
 {
     if (frame.lens_blades < 3u) return sample_disk(u);
@@ -36,7 +36,7 @@ void camera_ray(vec2 film, vec2 lens, out vec3 origin, out vec3 direction)
     float x = (2.0 * film.x - 1.0) * frame.film_x;
     float y = (1.0 - 2.0 * film.y) * frame.film_y;
     origin = frame.eye;
-    if (kEquirectangular) {  // (TF-8)
+    if (kEquirectangular) {  // (TF-9)
         vec2 polar = cos_sin_turns(0.5 * film.y);
         float turn = film.x - 0.5;
         vec2 around = cos_sin_turns(turn < 0.0 ? turn + 1.0 : turn);

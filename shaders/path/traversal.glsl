@@ -63,13 +63,18 @@ bool is_there(Ray ray, uint primitive, uint flags, float u, float v)
 vec3 passed = vec3(1.0);
 vec3 passed_here = vec3(1.0);
 
-vec3 passed_by_primitive(Ray ray, PrimitiveData data, uint primitive, Meeting m)
+vec3 passed_by_primitive(Ray ray, PrimitiveData data, uint primitive, Meeting m, float t_max)
 {
+    bool sphere = kSpheres && (data.flags & kPrimitiveSphere) != 0u;
     vec3 n = cross(data.p1 - data.p0, data.p2 - data.p0);
-    if (kSpheres && (data.flags & kPrimitiveSphere) != 0u) n = ray.frame.origin + m.t * ray.direction - data.p0;
+    if (sphere) n = ray.frame.origin + m.t * ray.direction - data.p0;
     vec3 w = vec3(1.0 - m.u - m.v, m.u, m.v);
     float cosine = abs(dot(robust_normalize(n), robust_normalize(ray.direction)));
-    return passed_by_glass(data.flags & kPrimitiveMaterial, uvs_at(primitive, w), color_at(primitive, w), cosine);
+    vec3 once = passed_by_glass(data.flags & kPrimitiveMaterial, uvs_at(primitive, w), color_at(primitive, w), cosine);
+    // A sphere that is entered is left again at the same cosine, unless the light is within.
+    float out_again = m.t + 2.0 * data.p1.x * cosine / robust_length(ray.direction);
+    bool twice = sphere && m.front && (data.flags & kPrimitiveCulled) == 0u && out_again < t_max;
+    return twice ? once * once : once;
 }
 
 // Tests one primitive; `hit` is replaced where it is met closer.
@@ -82,7 +87,7 @@ bool meet(Ray ray, uint primitive, inout Hit hit)
     if (kAlpha && met && (data.flags & kPrimitiveAlpha) != 0u) met = is_there(ray, primitive, data.flags, m.u, m.v);
     if (kGlassShadows && kShadow) {
         bool glass = met && (data.flags & kPrimitiveGlass) != 0u;
-        passed_here = glass ? passed_by_primitive(ray, data, primitive, m) : vec3(1.0);
+        passed_here = glass ? passed_by_primitive(ray, data, primitive, m, hit.t) : vec3(1.0);
         met = met && !glass;
     }
     hit.t = met ? m.t : hit.t;

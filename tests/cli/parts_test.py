@@ -38,8 +38,9 @@ class Parts(Case):
         self.assertIn("going on from 7 samples", run.err)
         self.assertEqual(self.bytes("one.exr"), self.bytes("resumed.exr"))
         for changes, what in ((["--seed", "3"], "seed is 0 there and 3 here"), (["--orbit", "1,2"], "fingerprint"),
-                              (["--max-depth", "3"], "max-depth is 8 there"), (["--spp", "5"], "40 samples a pixel already")):
+                              (["--max-depth", "3"], "max-depth is 8 there")):
             self.assertIn(what, self.run_etalon(*SCENE, *state, *changes, "-o", self.path("x.exr"), code=2).err)
+        self.assertIn("40 samples a pixel already", self.run_etalon(*SCENE[:-1], "5", *state, "-o", self.path("x.exr"), code=2).err)
         with open(self.path("state"), "r+b") as file:
             file.seek(200)
             byte = file.read(1)[0]
@@ -65,9 +66,9 @@ class Parts(Case):
         for options, what in ((["--shard", "0/3"], "--shard"), (["--shard", "4/3"], "--shard"), (["--shard", "1"], "--shard"),
                               (["--checkpoint", "5"], "--resume"), (["--shard", "1/2", "--max-error", "0.1"], "exclude"),
                               (["--resume", self.path("s"), "--max-error", "0.1"], "exclude"),
-                              (["--resume", self.path("s"), "--renderer", "raster"], "--renderer path"),
                               (["--shard", "1/17"], "no rows")):
             self.assertIn(what, self.run_etalon(*SCENE, *options, *out, code=2).err)
+        self.assertIn("--renderer path", self.run_etalon("render", "builtin:cornell", "--resume", self.path("s"), *out, code=2).err)
         run = self.run_etalon("render", "builtin:cornell", "builtin:spheres", "--renderer", "path", "--resume", self.path("s"),
                               "-o", self.path("{name}.exr"), code=2)
         self.assertIn("{name}", run.err)

@@ -13,7 +13,7 @@ View view_of(const Camera& camera)
     return {.width = 200, .height = 100, .world_from_camera = dmat4(1), .camera = camera};
 }
 
-TEST(CameraRays, TF_8_equirectangular_pixels_see_every_direction_once)
+TEST(CameraRays, TF_9_equirectangular_pixels_see_every_direction_once)
 {
     Camera camera;
     camera.equirectangular = true;
@@ -35,7 +35,7 @@ TEST(CameraRays, TF_8_equirectangular_pixels_see_every_direction_once)
     EXPECT_NEAR(rays.depth(dvec3(0, 3, 4)), 5, 1e-12);
 }
 
-TEST(CameraRays, TF_7_apertures_are_filled_evenly)
+TEST(CameraRays, TF_8_apertures_are_filled_evenly)
 {
     constexpr int kPoints = 60000;
     for (const int blades : {0, 3, 4, 5, 8}) {

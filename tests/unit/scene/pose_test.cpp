@@ -234,7 +234,7 @@ TEST(View, keeps_the_height_of_an_orthographic_view_whatever_the_picture_is_wide
     EXPECT_EQ(view.camera.xmag, 12);
 }
 
-TEST(View, TF_7_gets_a_lens_from_an_f_stop_focused_on_the_centre_or_where_it_is_told)
+TEST(View, TF_8_gets_a_lens_from_an_f_stop_focused_on_the_centre_or_where_it_is_told)
 {
     const Scene scene = one_box();
     PoseSettings settings;

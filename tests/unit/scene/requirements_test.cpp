@@ -223,7 +223,7 @@ TEST(Requirements, of_each_built_in_scene_have_names_and_causes)
     }
 }
 
-TEST(Requirements, TF_8_rasterizers_refuse_to_see_all_around)
+TEST(Requirements, TF_9_rasterizers_refuse_to_see_all_around)
 {
     const Scene scene = make_builtin("triangle");
     PoseSettings view;
