@@ -8,6 +8,7 @@
 
 #include "engine/base/error.h"
 #include "engine/image/develop.h"
+#include "engine/image/flip.h"
 #include "engine/image/metrics.h"
 #include "engine/measure/welch.h"
 
@@ -77,13 +78,15 @@ PictureMetrics picture_metrics(const Film& a, const Film& b)
     const Image linear_a = linear_image(a);
     const Image linear_b = linear_image(b);
     const Metrics linear = measure_difference(linear_a, linear_b, 0);
-    const Metrics shown = measure_difference(develop(a, {}), develop(b, {}));
+    const Image shown_a = develop(a, {}), shown_b = develop(b, {});
+    const Metrics shown = measure_difference(shown_a, shown_b);
     const double alpha = largest_alpha_difference(a, b);
     return {.identical = linear.identical && alpha == 0,
             .rmse = linear.rmse,
             .relmse = linear.relmse,
             .psnr = shown.psnr,
             .ssim = shown.ssim,
+            .flip = mean_flip(shown_b, shown_a),
             .max = linear.max_abs,
             .mean_relative = mean_relative_difference(linear_a, linear_b),
             .alpha_max = alpha};
@@ -118,6 +121,7 @@ bool over_budget(std::vector<std::string>& reasons, const PictureMetrics& m, con
     over |= breaks(reasons, "relMSE", m.relmse, budgets.relmse, false);
     over |= breaks(reasons, "PSNR", m.psnr.value_or(HUGE_VAL), budgets.psnr, true);
     over |= breaks(reasons, "SSIM", m.ssim, budgets.ssim, true);
+    over |= breaks(reasons, "FLIP", m.flip, budgets.flip, false);
     over |= breaks(reasons, "largest difference", m.max, budgets.max, false);
     over |= breaks(reasons, "mean relative difference", m.mean_relative, budgets.mean_relative, false);
     return over;

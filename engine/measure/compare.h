@@ -19,6 +19,7 @@ struct PictureMetrics {
     double relmse = 0;           ///< mean of (a - b)^2 / (b^2 + 0.01 mean(b)^2): the scale cancels (NUMERICS K4)
     std::optional<double> psnr;  ///< dB; nothing when the developed pictures are identical
     double ssim = 1;
+    double flip = 0;           ///< mean FLIP of the developed pictures (engine/image/flip.h): 0 equal, 1 at most
     double max = 0;            ///< largest |a - b|, nit
     double mean_relative = 0;  ///< mean |a - b| / mean (|a| + |b|)/2
     double alpha_max = 0;      ///< largest difference of coverage
@@ -30,9 +31,10 @@ struct Budgets {
     std::optional<double> relmse;
     std::optional<double> psnr;  ///< at least
     std::optional<double> ssim;  ///< at least
+    std::optional<double> flip;
     std::optional<double> max;
     std::optional<double> mean_relative;
-    bool any() const { return rmse || relmse || psnr || ssim || max || mean_relative; }
+    bool any() const { return rmse || relmse || psnr || ssim || flip || max || mean_relative; }
 };
 
 /// The rounding to allow between a float device and double precision: a device's exp2 and log2 (sRGB decoding),
