@@ -39,7 +39,13 @@ bool acts_on(const Knob& knob, Renderer renderer)
 std::vector<std::string> tried_values(const Knob& knob, const RenderSettings& standard, std::uint64_t most)
 {
     std::vector<std::string> out;
+    std::vector<std::string> named;
+    for (const std::string_view value : knob.tried)
+        if (!value.empty()) named.emplace_back(value);
+    if (!named.empty()) return named;
     if (std::holds_alternative<Switch>(knob.type)) return {"on", "off"};
+    if (const auto* choice = std::get_if<NameChoice>(&knob.type))
+        return {choice->values.begin(), choice->values.begin() + choice->count};
     if (const auto* choice = std::get_if<CountChoice>(&knob.type)) {
         for (std::size_t i = 0; i < choice->count; ++i) out.push_back(std::to_string(choice->values[i]));
         return out;
@@ -121,11 +127,14 @@ class Measuring {
         const double affordable = settings_.reference_share * settings_.budget_seconds / a_sample;
         how.spp = static_cast<std::uint64_t>(
             std::clamp(affordable, double(kFirstReferenceSamples), double(kMostReferenceSamples)));
+        if (take_cached(how)) return;
         const Clock clock;
         if (progress_.stopped()) return;
         out_.reference = render_(how, quiet("the reference", 0));
         out_.reference_seconds = clock.seconds();
         how.spp = out_.reference.samples;
+        if (settings_.cache != nullptr && !progress_.stopped())
+            settings_.cache->keep(settings_.cache_key, out_.reference);
     }
 
     void measure_points()
@@ -145,6 +154,18 @@ class Measuring {
     }
 
  private:
+    /// True when an earlier run has left a reference that is no worse than what this one could afford.
+    bool take_cached(RenderSettings& how)
+    {
+        if (settings_.cache == nullptr) return false;
+        std::optional<Film> kept = settings_.cache->find(settings_.cache_key);
+        if (!kept || kept->samples < how.spp || kept->variance.empty()) return false;
+        out_.reference = std::move(*kept);
+        out_.reference_cached = true;
+        how.spp = out_.reference.samples;
+        return true;
+    }
+
     /// Says where the whole stands; what a renderer says of its own picture would interrupt that.
     Progress quiet(const std::string& stage, double fraction) const
     {
@@ -164,15 +185,25 @@ class Measuring {
             RenderSettings settings = point.settings;
             settings.seed = settings_.seed + std::uint64_t(round) + 1;
             const Progress silent = quiet(point.flags, clock_.seconds() / settings_.budget_seconds);
-            // Pipelines that were never used are compiled at their first draw: that is not the picture's cost.
-            if (round == 0) static_cast<void>(render_(settings, silent));
+            // Scenes are uploaded and pipelines compiled at their first use: that is not the picture's cost.
+            if (round == 0) {
+                RenderSettings first = settings;
+                first.spp = 1;
+                const Clock making;
+                static_cast<void>(render_(first, silent));
+                point.first_seconds = making.seconds();
+                if (settings_.memory) point.memory = settings_.memory(settings);
+            }
             const Clock one;
             Film film = render_(settings, silent);
             const double seconds = one.seconds();
             if (progress_.stopped()) return false;
             point.time.seconds.push_back(seconds);
             errors_[i].push_back(measure_error(film, out_.reference));
-            if (round == 0) point.film = std::move(film);
+            if (round == 0) {
+                point.metrics = compare(film, out_.reference).metrics;
+                point.film = std::move(film);
+            }
         }
         return true;
     }

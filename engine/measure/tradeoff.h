@@ -10,6 +10,7 @@
 #include "engine/image/develop.h"
 #include "engine/measure/compare.h"
 #include "engine/measure/frontier.h"
+#include "engine/measure/reference_cache.h"
 #include "engine/measure/report.h"
 #include "engine/scene/settings.h"
 
@@ -24,19 +25,26 @@ struct TradeoffSettings {
     int rounds = 5;                ///< times that a point is measured, at most
     int combinations = 24;         ///< points that turn several knobs at once, at most
     std::uint64_t seed = 1;
+    /// Bytes that a picture of these settings is predicted to need. Empty: not said.
+    std::function<std::uint64_t(const RenderSettings&)> memory{};
+    const ReferenceCache* cache = nullptr;  ///< where references are kept between runs; null: nowhere
+    std::string cache_key{};                ///< of the scene and of all settings but the samples
 };
 
 /// Settings that were tried, and what they cost and gave.
 struct TradePoint {
     RenderSettings settings;
-    std::string flags;       ///< to copy: "--renderer path --spp 16"
-    std::string turned;      ///< the knob that differs from the standard; "" at the standard, "several" otherwise
-    std::size_t base = 0;    ///< the standard point of the same renderer
-    Film film;               ///< of the first round
-    Timing time;             ///< of the render call: upload, pipelines (cached after the first) and drawing
-    ErrorMeasurement error;  ///< against the reference, mean over rounds, each with its own seed
-    bool frontier = false;   ///< no other point is both faster and nearer to the reference
-    double time_ratio = 1;   ///< median over rounds of time / the base's time in the same round
+    std::string flags;         ///< to copy: "--renderer path --spp 16"
+    std::string turned;        ///< the knob that differs from the standard; "" at the standard, "several" otherwise
+    std::size_t base = 0;      ///< the standard point of the same renderer
+    Film film;                 ///< of the first round
+    Timing time;               ///< of a picture, scene and pipelines being there
+    double first_seconds = 0;  ///< of the first call, which makes them (a sample a pixel of path tracers)
+    PictureMetrics metrics{};  ///< of the first round against the reference, whose noise is in them
+    std::uint64_t memory = 0;  ///< bytes, predicted
+    ErrorMeasurement error;    ///< against the reference, mean over rounds, each with its own seed
+    bool frontier = false;     ///< no other point is both faster and nearer to the reference
+    double time_ratio = 1;     ///< median over rounds of time / the base's time in the same round
 };
 
 /// The measured frontier of one scene.
@@ -49,6 +57,7 @@ struct Tradeoff {
     Film reference;
     RenderSettings reference_settings;
     double reference_seconds = 0;
+    bool reference_cached = false;   ///< made by an earlier run
     std::vector<TradePoint> points;  ///< standards first, then one knob at a time, then several
     DevelopSettings develop;
     bool interrupted = false;
@@ -59,7 +68,8 @@ struct Tradeoff {
 /// most `most_spp` samples. Pure.
 std::vector<TradePoint> plan_tradeoff(const TradeoffSettings& settings, std::uint64_t most_spp);
 
-/// Renders `settings` and nothing else: what is timed. Must be callable again and again.
+/// Renders `settings` and nothing else: what is timed. Must be callable again and again; what pictures share should be
+/// kept from one call to the next.
 using RenderCall = std::function<Film(const RenderSettings&, const Progress&)>;
 
 /// Makes the reference (the Vulkan path tracer, 64 segments deep, as many samples as its share of the budget allows)

@@ -32,6 +32,11 @@ std::vector<const TradePoint*> frontier_of(const Tradeoff& tradeoff)
     return out;
 }
 
+std::string megabytes(std::uint64_t bytes)
+{
+    return bytes == 0 ? "-" : fmt::format("{:.0f} MB", double(bytes) / 1e6);
+}
+
 std::string quoted(const std::string& text)
 {
     std::string out = "\"";
@@ -44,19 +49,21 @@ std::string quoted(const std::string& text)
 std::string tradeoff_table(const Tradeoff& tradeoff)
 {
     std::string out =
-        fmt::format("{}: reference {} spp in {}\n\nFrontier (nothing measured is both faster and nearer)\n",
-                    tradeoff.scene, tradeoff.reference.samples, seconds_text(tradeoff.reference_seconds));
+        fmt::format("{}: reference {} spp {}\n\nFrontier (nothing measured is both faster and nearer)\n",
+                    tradeoff.scene, tradeoff.reference.samples,
+                    tradeoff.reference_cached ? "of an earlier run" : "in " + seconds_text(tradeoff.reference_seconds));
     std::vector<TableRow> rows = {{"time", "relMSE", "settings to copy"}};
     for (const TradePoint* point : frontier_of(tradeoff))
         rows.push_back({time_cell(point->time), error_cell(point->error), point->flags});
     out += aligned(rows);
 
     out += "\nWhat each knob buys and costs here, alone\n";
-    rows = {{"knob", "settings", "time", "relMSE", "at the standard"}};
+    rows = {{"knob", "settings", "time", "relMSE", "at the standard", "FLIP", "memory"}};
     for (const TradePoint& point : tradeoff.points) {
         if (point.turned.empty() || point.turned == "several") continue;
         rows.push_back({point.turned, point.flags, fmt::format("× {:.2f}", point.time_ratio), error_cell(point.error),
-                        error_cell(tradeoff.points[point.base].error)});
+                        error_cell(tradeoff.points[point.base].error), fmt::format("{:.3f}", point.metrics.flip),
+                        megabytes(point.memory)});
     }
     out += aligned(rows);
     const bool unresolved = std::any_of(tradeoff.points.begin(), tradeoff.points.end(),
@@ -71,12 +78,14 @@ std::string tradeoff_csv(const Tradeoff& tradeoff)
 {
     std::string out =
         "settings,turned,frontier,rounds,seconds_median,seconds_low,seconds_high,time_ratio,relmse,relmse_deviation,"
-        "reference_share\r\n";
+        "reference_share,psnr_db,ssim,flip,first_seconds,memory_bytes_predicted\r\n";
     for (const TradePoint& point : tradeoff.points) {
         const MedianInterval time = median_interval(point.time.seconds);
-        out += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\r\n", quoted(point.flags), point.turned,
+        out += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\r\n", quoted(point.flags), point.turned,
                            point.frontier ? 1 : 0, point.time.seconds.size(), point.time.median(), time.low, time.high,
-                           point.time_ratio, point.error.relmse, point.error.deviation, point.error.reference_share);
+                           point.time_ratio, point.error.relmse, point.error.deviation, point.error.reference_share,
+                           point.metrics.psnr ? fmt::format("{}", *point.metrics.psnr) : "", point.metrics.ssim,
+                           point.metrics.flip, point.first_seconds, point.memory);
     }
     return out;
 }
