@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <memory>
 #include <random>
 
 #include "engine/base/error.h"
@@ -68,6 +70,48 @@ std::optional<Variant> turned(const Scene& scene, double degrees)
     return out;
 }
 
+bool uses_tangents(const Scene& scene)
+{
+    return std::any_of(scene.materials.begin(), scene.materials.end(), [](const Material& material) {
+        return material.normal_texture.present() ||
+               (material.layers &&
+                (material.layers->anisotropy != 0 || material.layers->clearcoat_normal_texture.present()));
+    });
+}
+
+/// R4: left and right of the world exchanged, and of the eye: the eye is the last node of the canonical scene. Which
+/// way a bitangent goes in a mirrored mesh is not said by glTF in so many words.
+std::optional<Variant> mirrored(const Scene& scene, double /*size*/)
+{
+    if (uses_tangents(scene)) return std::nullopt;
+    Variant out{.scene = scene, .mirrored = true};
+    dmat4 mirror(1);
+    mirror[0][0] = -1;
+    SceneRoot& root = out.scene.roots.front();
+    const Index eye = root.nodes.back();
+    root.nodes.pop_back();
+    put_under(out.scene, mirror);
+    out.scene.nodes[eye].parent_from_node = mirror * out.scene.nodes[eye].parent_from_node * mirror;
+    root.nodes.push_back(eye);
+    if (auto& environment = root.environment) {
+        environment->rotation = -environment->rotation;
+        if (environment->map) {
+            auto map = std::make_shared<Image>(*environment->map);
+            const auto channels = std::size_t(map->channels);
+            for (int y = 0; y < map->height; ++y)
+                for (int x = 0; x < map->width; ++x)
+                    for (std::size_t c = 0; c < channels; ++c)
+                        map->values[(std::size_t(y) * std::size_t(map->width) + std::size_t(x)) * channels + c] =
+                            environment->map
+                                ->values[(std::size_t(y) * std::size_t(map->width) + std::size_t(map->width - 1 - x)) *
+                                             channels +
+                                         c];
+            environment->map = std::move(map);
+        }
+    }
+    return out;
+}
+
 /// R5: so many nodes between the root and the rest.
 std::optional<Variant> nested(const Scene& scene, double nodes)
 {
@@ -121,6 +165,64 @@ std::optional<Variant> rotated_vertices(const Scene& scene, double by)
             std::rotate(indices.begin() + std::ptrdiff_t(i), indices.begin() + std::ptrdiff_t(i) + int(by),
                         indices.begin() + std::ptrdiff_t(i) + 3);
     });
+    return any ? std::optional(std::move(out)) : std::nullopt;
+}
+
+/// The attributes of a new vertex halfway between two. Normals stay as long as the mean is: what is interpolated in
+/// between is then what it was.
+std::uint32_t add_middle(Primitive& p, std::uint32_t a, std::uint32_t b)
+{
+    const auto middle = [&](auto& list) {
+        if (!list.empty()) list.push_back((list[a] + list[b]) * 0.5f);
+    };
+    middle(p.positions);
+    middle(p.normals);
+    if (!p.tangents.empty()) {
+        vec4 tangent = (p.tangents[a] + p.tangents[b]) * 0.5f;
+        tangent.w = p.tangents[a].w;
+        p.tangents.push_back(tangent);
+    }
+    for (auto& set : p.uv) middle(set);
+    middle(p.colors);
+    return static_cast<std::uint32_t>(p.positions.size() - 1);
+}
+
+bool subdivide(Primitive& p)
+{
+    if (p.topology != Topology::triangles || p.indices.empty() || p.is_deformable()) return false;
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
+    const auto middle = [&](std::uint32_t a, std::uint32_t b) {
+        const auto [found, added] = middles.try_emplace(std::minmax(a, b), 0u);
+        if (added) found->second = add_middle(p, found->first.first, found->first.second);
+        return found->second;
+    };
+    std::vector<std::uint32_t> out;
+    for (std::size_t i = 0; i + 3 <= p.indices.size(); i += 3) {
+        const std::uint32_t a = p.indices[i], b = p.indices[i + 1], c = p.indices[i + 2];
+        const std::uint32_t ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+        for (const std::uint32_t v : {a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca}) out.push_back(v);
+    }
+    p.indices = std::move(out);
+    return true;
+}
+
+/// R8: each triangle as four by the middles of its edges, so many times; all are cut, so that none meets a corner
+/// within an edge. Left alone where that would be more than some million triangles.
+std::optional<Variant> subdivided(const Scene& scene, double times)
+{
+    constexpr std::size_t kMostIndices = 12'000'000;
+    if (uses_tangents(scene) || has_blend(scene)) return std::nullopt;
+    Variant out{.scene = scene};
+    bool any = false;
+    std::size_t indices = 0;
+    for (const Mesh& mesh : scene.meshes)
+        for (const Primitive& primitive : mesh.primitives) indices += primitive.indices.size();
+    for (int i = 0; i < static_cast<int>(times); ++i) {
+        indices *= 4;
+        if (indices > kMostIndices) return std::nullopt;
+        for (Mesh& mesh : out.scene.meshes)
+            for (Primitive& primitive : mesh.primitives) any |= subdivide(primitive);
+    }
     return any ? std::optional(std::move(out)) : std::nullopt;
 }
 
@@ -201,6 +303,40 @@ std::optional<Variant> uv_shifted(const Scene& scene, double by)
     return any ? std::optional(std::move(out)) : std::nullopt;
 }
 
+/// R28: every key and the picture so many seconds later.
+std::optional<Variant> played_later(const Scene& scene, double seconds)
+{
+    if (scene.animations.empty()) return std::nullopt;
+    Variant out{.scene = scene, .later = seconds};
+    for (Animation& animation : out.scene.animations) {
+        animation.duration += seconds;
+        for (AnimationSampler& sampler : animation.samplers)
+            for (double& time : sampler.times) time += seconds;
+    }
+    return out;
+}
+
+std::optional<Variant> drawn_with(const Scene& scene, std::function<void(RenderSettings&)> settings)
+{
+    return Variant{.scene = scene, .settings = std::move(settings)};
+}
+
+/// R20: ways to the same mean.
+std::optional<Variant> without_roulette(const Scene& scene, double /*size*/)
+{
+    return drawn_with(scene, [](RenderSettings& settings) { settings.russian_roulette = false; });
+}
+
+std::optional<Variant> with_sobol(const Scene& scene, double /*size*/)
+{
+    return drawn_with(scene, [](RenderSettings& settings) { settings.sampler = Sequence::sobol; });
+}
+
+std::optional<Variant> by_reference(const Scene& scene, double /*size*/)
+{
+    return drawn_with(scene, [](RenderSettings& settings) { settings.renderer = Renderer::reference; });
+}
+
 /// R25: a near plane nearer still cuts nothing.
 std::optional<Variant> nearer_plane(const Scene& scene, double by)
 {
@@ -215,6 +351,14 @@ constexpr std::array kRelations = {
         .id = "R1", .name = "scale down", .unit = "÷", .start = 2, .promised = 1e6, .most = 1e12, .apply = scaled_down},
     Relation{.id = "R2", .name = "translation", .unit = "m", .start = 1, .promised = 1e6, .most = 1e9, .apply = moved},
     Relation{.id = "R3", .name = "turn", .unit = "°", .start = 90, .promised = 217.3, .most = 217.3, .apply = turned},
+    Relation{.id = "R4",
+             .name = "mirrored",
+             .unit = "",
+             .start = 1,
+             .promised = 1,
+             .most = 1,
+             .raster = false,
+             .apply = mirrored},
     Relation{
         .id = "R5", .name = "node depth", .unit = "nodes", .start = 1, .promised = 1e3, .most = 1e4, .apply = nested},
     Relation{.id = "R6", .name = "triangle order", .unit = "", .start = 1, .promised = 1, .most = 1, .apply = shuffled},
@@ -225,6 +369,13 @@ constexpr std::array kRelations = {
              .promised = 2,
              .most = 2,
              .apply = rotated_vertices},
+    Relation{.id = "R8",
+             .name = "triangles split",
+             .unit = "times",
+             .start = 1,
+             .promised = 1,
+             .most = 4,
+             .apply = subdivided},
     Relation{.id = "R9",
              .name = "instances flattened",
              .unit = "",
@@ -243,6 +394,37 @@ constexpr std::array kRelations = {
              .most = 64,
              .apply = split_lights},
     Relation{.id = "R16", .name = "uv shift", .unit = "", .start = 1, .promised = 64, .most = 1e5, .apply = uv_shifted},
+    Relation{.id = "R20",
+             .name = "no Russian roulette",
+             .unit = "",
+             .start = 1,
+             .promised = 1,
+             .most = 1,
+             .raster = false,
+             .apply = without_roulette},
+    Relation{.id = "R20",
+             .name = "Sobol's sequence",
+             .unit = "",
+             .start = 1,
+             .promised = 1,
+             .most = 1,
+             .raster = false,
+             .apply = with_sobol},
+    Relation{.id = "R20",
+             .name = "unbiased (reference)",
+             .unit = "",
+             .start = 1,
+             .promised = 1,
+             .most = 1,
+             .raster = false,
+             .apply = by_reference},
+    Relation{.id = "R28",
+             .name = "played later",
+             .unit = "s",
+             .start = 1,
+             .promised = 1e6,
+             .most = 1e9,
+             .apply = played_later},
     Relation{.id = "R25",
              .name = "near plane nearer",
              .unit = "÷",

@@ -1,16 +1,21 @@
 #pragma once
+#include <functional>
 #include <optional>
 #include <span>
 #include <string_view>
 
 #include "engine/scene/pose.h"
+#include "engine/scene/settings.h"
 
 namespace etalon {
 
 /// A scene whose picture is known before it is drawn.
 struct Variant {
     Scene scene;
-    double radiance = 1;  ///< the picture's radiance is this times the unchanged one's
+    double radiance = 1;                              ///< the picture's radiance is this times the unchanged one's
+    bool mirrored = false;                            ///< it is seen with left and right exchanged
+    double later = 0;                                 ///< it is posed so many seconds later
+    std::function<void(RenderSettings&)> settings{};  ///< how else it is drawn; empty: alike
 };
 
 /// A change of a scene, of any size, that leaves its picture as it was (or multiplies it by a known factor) by glTF's
@@ -24,7 +29,8 @@ struct Relation {
     double most = 1;        ///< nothing beyond is tried
     bool raster = true;     ///< asked of rasterizers
     bool path = true;       ///< asked of path tracers
-    /// `scene` must come from canonical_scene(). Nothing where the scene has nothing that could change.
+    /// `scene` must come from canonical_scene(); its images may be elsewhere meanwhile. Nothing where the scene has
+    /// nothing that could change.
     std::optional<Variant> (*apply)(const Scene& scene, double size);
 };
 

@@ -9,6 +9,7 @@
 
 #include "engine/base/error.h"
 #include "engine/math/stats.h"
+#include "engine/measure/invariants.h"
 
 namespace etalon {
 namespace {
@@ -22,6 +23,34 @@ Film divided(Film film, double k)
     return film;
 }
 
+/// Left and right exchanged.
+Film mirrored(Film film)
+{
+    const auto rows = [&](auto& list) {
+        for (std::size_t y = 0; !list.empty() && y < std::size_t(film.height); ++y)
+            std::reverse(list.begin() + std::ptrdiff_t(y) * film.width,
+                         list.begin() + std::ptrdiff_t(y + 1) * film.width);
+    };
+    rows(film.mean);
+    rows(film.variance);
+    rows(film.alpha);
+    return film;
+}
+
+/// While it lives, `to` has the images of `from`: no relation changes an image, and copies of them all for every
+/// variant would cost more than drawing it.
+class LentImages {
+ public:
+    LentImages(std::vector<Texels>& from, std::vector<Texels>& to) : from_(from), to_(to) { from_.swap(to_); }
+    ~LentImages() { from_.swap(to_); }
+    LentImages(const LentImages&) = delete;
+    LentImages& operator=(const LentImages&) = delete;
+
+ private:
+    std::vector<Texels>& from_;
+    std::vector<Texels>& to_;
+};
+
 class Trials {
  public:
     Trials(Stability& out, const PosedScene& posed, const PoseSettings& view, const StabilitySettings& settings,
@@ -33,7 +62,9 @@ class Trials {
           scene_(canonical_scene(posed, view)),
           view_(canonical_view(posed, view)),
           unchanged_(pose(scene_, view_))
-    {}
+    {
+        images_.swap(scene_.images);
+    }
 
     void run()
     {
@@ -52,6 +83,8 @@ class Trials {
             if (!trial.exists) continue;
             trial.row.promise = trial.row.probes.back().holds ? Holding::holds : Holding::breaks;
         }
+        for (const Renderer renderer : settings_.renderers)
+            if (renderer == Renderer::path && has_time()) check_path_tracer();
         for (Trial& trial : trials)
             if (has_time() && trial.exists && !trial.row.probes.empty()) look_further(trial);
         if (!has_time())
@@ -116,6 +149,14 @@ class Trials {
         return film;
     }
 
+    Film draw(Scene& scene, const RenderSettings& settings, double later)
+    {
+        const LentImages lent(images_, scene.images);
+        PoseSettings view = view_;
+        if (view.time || view.animation) view.time = view.time.value_or(0) + later;
+        return calls_.render(pose(scene, view), settings, progress_.silent());
+    }
+
     void probe(Trial& trial, double size)
     {
         const std::string what =
@@ -125,15 +166,19 @@ class Trials {
         trial.row.probes.push_back({.size = size});
         Probe& probe = trial.row.probes.back();
         try {
-            const std::optional<Variant> variant = trial.relation->apply(scene_, size);
+            std::optional<Variant> variant = trial.relation->apply(scene_, size);
+            // A rest pose knows no time.
+            if (variant && variant->later != 0 && !view_.time && !view_.animation) variant.reset();
             if (!variant) {
                 trial.exists = false;
                 trial.row.probes.pop_back();
                 return;
             }
-            const PosedScene posed = pose(variant->scene, view_);
-            const RenderSettings settings = settings_of(trial.renderer, ++drawn_);
-            const Film film = divided(calls_.render(posed, settings, progress_.silent()), variant->radiance);
+            RenderSettings settings = settings_of(trial.renderer, ++drawn_);
+            if (variant->settings) variant->settings(settings);
+            Film film = divided(draw(variant->scene, settings, variant->later), variant->radiance);
+            if (variant->mirrored) film = mirrored(std::move(film));
+            const LentImages lent(images_, scene_.images);
             const Comparison comparison = trial.renderer == Renderer::raster
                                               ? calls_.judge_raster(unchanged_, settings, film)
                                               : compare(film, unchanged_film(trial.renderer), comparing_);
@@ -143,6 +188,42 @@ class Trials {
         } catch (const Error& error) {
             probe.why = error.message();
         }
+    }
+
+    /// What is asked of a path tracer besides relations (engine/measure/invariants.h).
+    void check_path_tracer()
+    {
+        const auto add = [&](const char* id, const char* what, const char* unit, double promised, const auto& check) {
+            if (!has_time()) return;
+            progress_.report({.stage = what});
+            StabilityRow row{.id = id, .name = what, .unit = unit, .renderer = Renderer::path, .promised = promised};
+            row.probes.push_back({.size = promised});
+            try {
+                const Invariant found = check();
+                row.probes.back().holds = found.holds;
+                row.probes.back().why = found.why;
+            } catch (const Error& error) {
+                row.probes.back().why = error.message();
+            }
+            row.promise = row.probes.back().holds ? Holding::holds : Holding::breaks;
+            out_.rows.push_back(std::move(row));
+        };
+        const DrawCall draw_scene = [&](std::uint64_t samples) {
+            const LentImages lent(images_, scene_.images);
+            RenderSettings settings = settings_of(Renderer::path, ++drawn_);
+            settings.spp = samples;
+            return calls_.render(unchanged_, settings, progress_.silent());
+        };
+        add("R21", "error falls as N^-1/2", "samples", double(kSlopeSamples.back()),
+            [&] { return error_slope(draw_scene, comparing_.false_alarm); });
+        add("R22", "white furnace", "", 1, [&] {
+            const Scene furnace = furnace_scene();
+            RenderSettings settings = settings_of(Renderer::path, ++drawn_);
+            settings.max_depth = kFurnaceDepth;
+            settings.spp = kFurnaceSamples;
+            const Film film = calls_.render(pose(furnace), settings, progress_.silent());
+            return judge_furnace(film, comparing_.false_alarm);
+        });
     }
 
     /// Beyond the promise while it holds, and between the last that held and the first that broke.
@@ -168,7 +249,8 @@ class Trials {
     const StabilitySettings& settings_;
     const StabilityCalls& calls_;
     const Progress& progress_;
-    const Scene scene_;
+    Scene scene_;  // its images are in images_ while nothing is drawn
+    std::vector<Texels> images_;
     const PoseSettings view_;
     const PosedScene unchanged_;
     CompareSettings comparing_;
