@@ -56,6 +56,11 @@ Report measure_agreement(Report report, std::span<const Contender> contenders, c
         run.label = contender.label;
         report.runs.push_back(std::move(run));
     }
+    if (settings.probe && !progress.stopped()) {
+        const PixelProbe probe = settings.probe(progress);
+        for (std::size_t i = first; i < report.runs.size() && probe.truth.samples >= 2; ++i)
+            report.runs[i].error = measure_picture(report.runs[i].film, probe, report.develop);
+    }
     report.interrupted = progress.stopped();
     for (const auto& [a, b] : pairs_to_compare(contenders, report.runs.size() - first))
         report.comparisons.push_back({.a = first + a,

@@ -24,6 +24,9 @@ struct AgreementSettings {
     /// Judges Renderer::raster (first) against Renderer::reference_raster by the budget of engine/measure/rasters.h,
     /// which has to know the scene and the device. Empty: metrics only.
     std::function<Comparison(const Film&, const Film&)> judge_rasters;
+    /// Traces single pixels, by which the error of every picture is measured (engine/measure/picture_error.h). Empty:
+    /// no error is.
+    std::function<PixelProbe(const Progress&)> probe;
 };
 
 /// Renders with each contender in turn and adds runs and comparisons to `report`. What is compared: rasterizers with

@@ -8,6 +8,7 @@
 #include "engine/image/develop.h"
 #include "engine/image/film.h"
 #include "engine/measure/compare.h"
+#include "engine/measure/picture_error.h"
 
 namespace etalon {
 
@@ -23,6 +24,7 @@ struct RendererRun {
     std::string device;  ///< "llvmpipe (LLVM 15.0.6, 256 bits)", "CPU, double precision"
     Film film;
     std::vector<StageTime> stages;
+    std::optional<PictureError> error{};  ///< of the picture, where single pixels were traced
 };
 
 /// The comparison of runs[a] with runs[b].

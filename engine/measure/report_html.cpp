@@ -5,6 +5,7 @@
 
 #include "engine/image/io.h"
 #include "engine/measure/page.h"
+#include "engine/measure/picture_error.h"
 #include "engine/measure/report.h"
 #include "engine/measure/text.h"
 
@@ -128,21 +129,51 @@ std::string renderers_table(const Report& report)
     return out + "</tbody></table></div>\n";
 }
 
+/// What the pictures of all renderers are off by, and where.
+std::string errors_section(const Report& report)
+{
+    std::string rows, maps;
+    const auto cell = [](const Estimate& e, double scale, const char* unit) {
+        return fmt::format("{:.3g}{} ({:.3g} … {:.3g})", scale * e.value, unit, scale * e.low, scale * e.high);
+    };
+    for (const RendererRun& run : report.runs) {
+        if (!run.error) continue;
+        const PictureError& e = *run.error;
+        rows += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
+                            html_escape(run.label), cell(e.relative, 100, "%"),
+                            e.systematic ? cell(*e.systematic, 100, "%") : "all of it", cell(e.brightness, 100, "%"),
+                            cell(e.relmse, 1, ""), cell(e.display, 1, ""));
+        maps += picture(picture_error_map(e), "Map of the error of " + run.label,
+                        fmt::format("<strong>{}</strong>: error by place, black 0.1% or less, white 100% or more",
+                                    html_escape(run.name)));
+    }
+    if (rows.empty()) return {};
+    const PictureError& first = *report.runs.front().error;
+    return fmt::format(
+        "<h2>Error of each picture</h2>\n<p>Against {} pixels at random, traced by the reference with {} samples of "
+        "up to {} segments each{}; its noise is taken off. 95% intervals.</p>\n<div class=\"scroll\"><table><thead>"
+        "<tr><th>picture</th><th>RMSE / mean</th><th>of it not noise</th><th>brightness</th><th>relMSE</th><th>steps "
+        "of 255 on the display</th></tr></thead><tbody>\n{}</tbody></table></div>\n<div class=\"grid\">{}</div>\n",
+        first.pixels, first.samples, first.depth, first.cut ? " (as many as time allowed)" : "", rows, maps);
+}
+
 std::string comparisons_table(const Report& report)
 {
     if (report.comparisons.empty()) return {};
     std::string out =
         "<h2>Comparisons</h2>\n<div class=\"scroll\"><table><thead><tr><th>A</th><th>B</th><th>mean "
-        "difference</th><th>RMSE</th><th>relMSE</th><th>PSNR</th><th>SSIM</th><th>verdict</th></tr></thead><tbody>\n";
+        "difference</th><th>RMSE</th><th>relMSE</th><th>PSNR</th><th>SSIM</th><th>FLIP</th><th>verdict</th></tr></"
+        "thead><tbody>\n";
     for (const RunComparison& pair : report.comparisons) {
         const PictureMetrics& m = pair.comparison.metrics;
         std::string why;
         for (const std::string& reason : pair.comparison.reasons) why += "<br>" + html_escape(reason);
         out += fmt::format(
-            "<tr><td>{}</td><td>{}</td><td>{}</td><td>{:.4g}</td><td>{:.4g}</td><td>{}</td><td>{:.4f}</td><td>{}{}</"
+            "<tr><td>{}</td><td>{}</td><td>{}</td><td>{:.4g}</td><td>{:.4g}</td><td>{}</td><td>{:.4f}</td><td>{:.4f}</"
+            "td><td>{}{}</"
             "td></tr>\n",
             html_escape(report.runs[pair.a].name), html_escape(report.runs[pair.b].name), percent(m.mean_relative),
-            m.rmse, m.relmse, m.psnr ? fmt::format("{:.1f} dB", *m.psnr) : "identical", m.ssim,
+            m.rmse, m.relmse, m.psnr ? fmt::format("{:.1f} dB", *m.psnr) : "identical", m.ssim, m.flip,
             verdict_span(pair.comparison), why);
     }
     return out + "</tbody></table></div>\n";
@@ -280,7 +311,7 @@ std::string report_html(const Report& report)
     out += fmt::format("<h1>{}: <span class=\"{}\">{}</span>{}</h1>\n", html_escape(report.scene),
                        fine ? "good" : "bad", summary(report), report.interrupted ? " (interrupted)" : "");
     if (!report.command.empty()) out += fmt::format("<p><code>{}</code></p>\n", html_escape(report.command));
-    out += comparisons_table(report) + renderers_table(report);
+    out += comparisons_table(report) + renderers_table(report) + errors_section(report);
     if (!films.empty()) {
         out += pictures_section(report, films, factor);
         out += page::kInspector;

@@ -7,6 +7,7 @@
 #include "engine/measure/stability.h"
 #include "engine/measure/text.h"
 #include "engine/measure/tradeoff.h"
+#include "engine/scene/knobs.h"
 
 namespace etalon {
 namespace {
@@ -111,6 +112,7 @@ Json comparison_json(const Comparison& comparison)
               {"relmse", number(m.relmse)},
               {"psnr_db", number(m.psnr)},
               {"ssim", number(m.ssim)},
+              {"flip", number(m.flip)},
               {"max", number(m.max)},
               {"mean_relative", number(m.mean_relative)},
               {"alpha_max", number(m.alpha_max)}}},
@@ -176,6 +178,7 @@ std::string report_json(const Report& report)
                         {"label", run.label},
                         {"device", run.device},
                         {"film", film_json(run.film)},
+                        {"picture_error", run.error ? picture_error(*run.error) : Json(nullptr)},
                         {"stages", stages_json(run.stages)}});
     Json comparisons = Json::array();
     for (const RunComparison& pair : report.comparisons) {
@@ -220,7 +223,23 @@ std::string tradeoff_json(const Tradeoff& tradeoff)
                           {"relmse", point.error.relmse},
                           {"relmse_deviation", point.error.deviation},
                           {"reference_share", point.error.reference_share},
-                          {"resolved", point.error.resolved()}});
+                          {"resolved", point.error.resolved()},
+                          {"psnr_db", number(point.metrics.psnr)},
+                          {"ssim", number(point.metrics.ssim)},
+                          {"flip", number(point.metrics.flip)},
+                          {"first_seconds", point.first_seconds},
+                          {"memory_bytes_predicted", point.memory}});
+    Json table = Json::array();
+    for (const Knob& knob : knobs())
+        table.push_back({{"name", knob.name},
+                         {"renderers", knob.scope == KnobScope::path     ? "path tracers"
+                                       : knob.scope == KnobScope::raster ? "rasterizers"
+                                                                         : "CPU stages"},
+                         {"standard", knob_value(RenderSettings{}, knob.name)},
+                         {"what", knob.what},
+                         {"buys", knob.buys},
+                         {"costs", knob.costs},
+                         {"changes_pixels", knob.metric != KnobMetric::none}});
     const Json out = {{"schema", "etalon-tradeoff/1"},
                       {"scene", tradeoff.scene},
                       {"command", tradeoff.command},
@@ -231,7 +250,9 @@ std::string tradeoff_json(const Tradeoff& tradeoff)
                       {"reference",
                        {{"settings", flags_of(tradeoff.reference_settings)},
                         {"samples", tradeoff.reference.samples},
+                        {"from_cache", tradeoff.reference_cached},
                         {"seconds", tradeoff.reference_seconds}}},
+                      {"knobs", table},
                       {"points", points}};
     return out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "engine/measure/diff.h"
+#include "engine/measure/picture_error.h"
 #include "engine/measure/report.h"
 #include "engine/measure/text.h"
 
@@ -34,7 +35,28 @@ double total_seconds(const RendererRun& run)
 Row metric_cells(const PictureMetrics& m)
 {
     return {percent(m.mean_relative), fmt::format("{:.3g}", m.relmse),
-            m.psnr ? fmt::format("{:.1f} dB", *m.psnr) : "identical", fmt::format("{:.4f}", m.ssim)};
+            m.psnr ? fmt::format("{:.1f} dB", *m.psnr) : "identical", fmt::format("{:.4f}", m.ssim),
+            fmt::format("{:.4f}", m.flip)};
+}
+
+std::string errors_table(const Report& report)
+{
+    std::vector<Row> rows{{"picture", "error (95% interval)", "of it not noise", "brightness", "display steps"}};
+    const auto cell = [](const Estimate& e) {
+        return fmt::format("{} ({} to {})", percent(e.value), percent(e.low), percent(e.high));
+    };
+    const PictureError* first = nullptr;
+    for (const RendererRun& run : report.runs) {
+        if (!run.error) continue;
+        first = &*run.error;
+        const PictureError& e = *run.error;
+        rows.push_back({run.name, cell(e.relative), e.systematic ? cell(*e.systematic) : "all of it",
+                        cell(e.brightness), fmt::format("{:.2g}", e.display.value)});
+    }
+    if (first == nullptr) return {};
+    return "\n" + aligned(rows) +
+           fmt::format("  against {} pixels at random, traced by the reference with {} samples of up to {} segments\n",
+                       first->pixels, first->samples, first->depth);
 }
 
 std::string details(const Comparison& comparison)
@@ -56,14 +78,15 @@ std::string report_table(const Report& report, int width)
 {
     // The other columns of a run take about 70; what is left is the device's.
     const std::size_t device_width = static_cast<std::size_t>(std::clamp(width - 70, 12, 60));
-    std::vector<Row> runs{{"renderer", "device", "time", "samples", "error of the picture"}};
+    std::vector<Row> runs{{"renderer", "device", "time", "samples", "standard error"}};
     for (const RendererRun& run : report.runs)
         runs.push_back({run.name, shortened(run.device, device_width), seconds_text(total_seconds(run)),
                         run.film.variance.empty() ? "-" : fmt::format("{}", run.film.samples), error_text(run.film)});
     std::string out = fmt::format("{}{}\n", report.scene, report.interrupted ? " (interrupted)" : "") + aligned(runs);
+    out += errors_table(report);
     if (report.comparisons.empty()) return out;
 
-    std::vector<Row> pairs{{"compared", "mean diff.", "relMSE", "PSNR", "SSIM", "verdict"}};
+    std::vector<Row> pairs{{"compared", "mean diff.", "relMSE", "PSNR", "SSIM", "FLIP", "verdict"}};
     for (const RunComparison& pair : report.comparisons) {
         Row row{report.runs[pair.a].name + " - " + report.runs[pair.b].name};
         const Row cells = metric_cells(pair.comparison.metrics);
@@ -92,6 +115,7 @@ std::string diff_table(const FileDiff& diff)
                           {"relMSE", fmt::format("{:.4g}", m.relmse)},
                           {"PSNR", m.psnr ? fmt::format("{:.2f} dB", *m.psnr) : "identical"},
                           {"SSIM", fmt::format("{:.5f}", m.ssim)},
+                          {"FLIP", fmt::format("{:.5f}", m.flip)},
                           {"largest difference", fmt::format("{:.4g}", m.max)}};
     if (m.alpha_max > 0) rows.push_back({"largest difference of alpha", fmt::format("{:.4g}", m.alpha_max)});
     return aligned(rows) + details(diff.comparison);

@@ -20,7 +20,8 @@ Command render_command()
         .description =
             "Renders each SCENE (a .gltf or .glb file, builtin:NAME, or - for a GLB on standard input) into a "
             "picture. A path-traced picture says its estimated error with a 95% interval. Ctrl-C finishes the "
-            "current pass and writes what there is.",
+            "current pass and writes what there is. Of several scenes, one that fails is named and the others go on; "
+            "the exit code is then the worst.",
         .argument = "SCENE...",
         .least = 1,
         .most = 100'000,
@@ -46,9 +47,26 @@ Command render_command()
                    "Path tracers: as many samples as the relative standard error E of the picture needs, found by a "
                    "pilot that is not part of the picture; --spp is then the most",
                .heading = "Speed and accuracy"},
+              {.name = "max-time",
+               .argument = "SECONDS",
+               .help = "Path tracers: as many samples as fit into this time from the start of the program (of each "
+                       "further picture from the end of the one before) to the written file; --spp is then the most",
+               .heading = "Speed and accuracy"},
+              {.name = "error",
+               .help = "Measure how far the picture is from the light that really reaches its pixels: 2,048 of them "
+                       "at random are path-traced by the reference, in 5 seconds at most; the error is said with its "
+                       "interval, and goes with a coarse map into the picture's texts and beside it as .error.json",
+               .heading = "Output"},
               {.name = "aovs",
                .help = "Also put depth, normal, albedo, emission, object and material id and uv into .exr files",
-               .heading = "Output"}},
+               .heading = "Output"},
+              {.name = "profile",
+               .help = "Say what each stage took, the device's passes by its own clock; path tracing is slower for it",
+               .heading = "Behaviour"},
+              {.name = "degrade",
+               .help = "What is predicted to need more than --memory gets smaller textures or a smaller picture, each "
+                       "half as wide and high until it fits, and says so; without it, it is refused",
+               .heading = "Behaviour"}},
              view_rows(),
              animation_rows(),
              frame_rows(),
@@ -56,6 +74,7 @@ Command render_command()
              shading_rows(),
              sampling_rows(),
              part_rows(),
+             post_rows(),
              develop_rows(),
              device_rows(),
              load_rows(),
@@ -66,10 +85,16 @@ Command render_command()
                       "A path-traced picture, with its radiance and error"},
                      {"etalon render builtin:cornell --renderer path --max-error 0.05 -o cornell.exr",
                       "As many samples as an error of 5% needs"},
+                     {"etalon render chair.glb --renderer path --max-time 10 -o chair.png",
+                      "The best picture that ten seconds allow, with its error"},
+                     {"etalon render chair.glb --error -o chair.png",
+                      "A rasterized picture that says how far it is from the truth"},
                      {"etalon render builtin:cornell --renderer path --spp 4096 --resume cornell.state -o cornell.exr",
                       "What is interrupted goes on where it stood when the same is typed again"},
                      {"etalon render a.glb b.glb --size 640x480 -o 'out/{name}.png'",
                       "Several scenes with one device start-up"},
+                     {"etalon render builtin:cornell --renderer path --spp 16 --post atrous,bloom -o clean.png",
+                      "Denoised along surfaces, with some glare"},
                      {"etalon render fox.glb --animation Run --frames 0:47 --fps 24 -o 'out/####.png'",
                       "Two seconds of an animation"},
                      {"cat chair.glb | etalon render - -o - > chair.png", "From standard input to standard output"}},
@@ -204,6 +229,11 @@ Command diff_command()
                               {.name = "min-ssim",
                                .argument = "X",
                                .help = "Budget: structural similarity of the developed pictures",
+                               .heading = "Verdict"},
+                              {.name = "max-flip",
+                               .argument = "X",
+                               .help = "Budget: mean FLIP of the developed pictures, 0 to 1: what an eye sees when "
+                                       "they are flipped in place",
                                .heading = "Verdict"}},
                              json_rows()}),
         .examples = {{"etalon diff new.exr golden.exr -o difference.png", "By statistics, with a difference picture"},
@@ -229,8 +259,20 @@ Command tradeoff_command()
         .options =
             together({measuring_rows("tradeoff", "How long to measure",
                                      "At most 15 seconds, 3 rounds, and one knob at a time only", "Whose settings"),
-                      view_rows(), animation_rows(), light_rows(), shading_rows(), sampling_rows(), develop_rows(),
-                      device_rows(), load_rows(), json_rows(), progress_rows()}),
+                      {{.name = "no-cache",
+                        .help = "Make the reference anew and do not keep it; else it goes into the user's cache "
+                                "(512 MiB at most), by the content of the scene, the settings and the build",
+                        .heading = "Measuring"}},
+                      view_rows(),
+                      animation_rows(),
+                      light_rows(),
+                      shading_rows(),
+                      sampling_rows(),
+                      develop_rows(),
+                      device_rows(),
+                      load_rows(),
+                      json_rows(),
+                      progress_rows()}),
         .examples = {{"etalon tradeoff chair.glb",
                       "A minute's measurement, and the page out/chair-tradeoff/tradeoff.html"},
                      {"etalon tradeoff builtin:cornell --renderer path --budget 300 --json", "The path tracer alone"}},
@@ -260,6 +302,7 @@ Command stability_command()
                                .standard = "0.001",
                                .heading = "Measuring"}},
                              view_rows(),
+                             animation_rows(),
                              light_rows(),
                              shading_rows(),
                              sampling_rows(),
@@ -284,7 +327,8 @@ Command explain_command()
         .summary = "Say what a picture of a scene requires of a renderer, and why",
         .description =
             "Prints each requirement of SCENE under these settings with the first object that causes it. Everything "
-            "a renderer builds (vertex attributes, textures, shader code, passes) follows from this list.",
+            "a renderer builds (vertex attributes, textures, shader code, passes) follows from this list. Of the "
+            "device's renderers also what it leaves of their shaders and data.",
         .argument = "SCENE",
         .least = 1,
         .most = 1,
@@ -294,16 +338,23 @@ Command explain_command()
                                .help = "For which renderer",
                                .standard = "raster",
                                .choices = {"raster", "path", "reference", "reference-raster"},
+                               .heading = "Output"},
+                              {.name = "measure",
+                               .help = "Also draw the picture, as required and with every requirement set, and say "
+                                       "the times and whether the pixels are alike to the bit",
                                .heading = "Output"}},
                              view_rows(),
                              animation_rows(),
                              light_rows(),
                              shading_rows(),
                              sampling_rows(),
+                             device_rows(),
                              load_rows(),
                              json_rows()}),
-        .examples = {{"etalon explain chair.glb", "What the rasterizer needs for it"}},
-        .exit_codes = "0 fine; 2 bad usage or input; 3 the machine cannot",
+        .examples = {{"etalon explain chair.glb", "What the rasterizer needs for it"},
+                     {"etalon explain builtin:cornell --renderer path --measure",
+                      "What specialising the path tracer saves, and that no pixel changes"}},
+        .exit_codes = "0 fine; 1 --measure found other pixels; 2 bad usage or input; 3 the machine cannot",
         .run = explain,
     };
 }
@@ -394,6 +445,39 @@ Command completion_command()
     };
 }
 
+Command post_command()
+{
+    return {
+        .name = "post",
+        .summary = "Apply post passes to a film",
+        .description =
+            "Reads FILM (.exr, as render writes it), applies the passes of --post on the Vulkan device, or in double "
+            "precision on the CPU with --reference, and writes the result.",
+        .argument = "FILM.exr",
+        .least = 1,
+        .most = 1,
+        .completes = Completes::file,
+        .options =
+            together({{{.name = "output",
+                        .letter = 'o',
+                        .argument = "FILE",
+                        .help = "Where to: .exr, .png (developed) or - (PNG on standard output); may be repeated",
+                        .completes = Completes::file,
+                        .repeats = true,
+                        .heading = "Output"},
+                       {.name = "reference", .help = "Without a device: in double precision", .heading = "Device"}},
+                      post_rows(),
+                      develop_rows(),
+                      device_rows(),
+                      json_rows()}),
+        .examples = {{"etalon post fox.exr --post outline -o lines.png", "Lines along silhouettes and creases"},
+                     {"etalon post noisy.exr --post atrous,exposure,tone:curve=agx,fxaa -o shown.png",
+                      "Denoised, exposed by its histogram, and toned before its edges are smoothed"}},
+        .exit_codes = "0 written; 2 bad usage or input; 3 the machine cannot",
+        .run = post,
+    };
+}
+
 Command man_command()
 {
     return {
@@ -413,10 +497,10 @@ Command man_command()
 
 const std::vector<Command>& commands()
 {
-    static const std::vector<Command> all = {render_command(),     merge_command(),    compare_command(),
-                                             diff_command(),       tradeoff_command(), stability_command(),
-                                             explain_command(),    info_command(),     view_command(),
-                                             completion_command(), man_command()};
+    static const std::vector<Command> all = {render_command(),    merge_command(),      post_command(),
+                                             compare_command(),   diff_command(),       tradeoff_command(),
+                                             stability_command(), explain_command(),    info_command(),
+                                             view_command(),      completion_command(), man_command()};
     return all;
 }
 

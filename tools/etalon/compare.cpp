@@ -4,6 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/measure/agreement.h"
+#include "engine/measure/picture_error.h"
 #include "engine/measure/rasters.h"
 #include "engine/scene/knobs.h"
 #include "tools/etalon/arguments.h"
@@ -111,9 +112,13 @@ int compare(const Arguments& arguments)
     const auto judge = [&](const Film& device, const Film& reference) {
         return judge_rasters(posed, settings, renderers.raster_precision(), device, reference);
     };
+    const auto probe = [&](const Progress& progress) {
+        return trace_probe(posed, settings, {.pixels = 1024, .samples = 64}, progress);
+    };
     ProgressDisplay display(arguments);
-    report = measure_agreement(std::move(report), contenders, {.compare = comparing, .judge_rasters = judge},
-                               display.progress(short_name(scene_name), interrupt.flag()));
+    report =
+        measure_agreement(std::move(report), contenders, {.compare = comparing, .judge_rasters = judge, .probe = probe},
+                          display.progress(short_name(scene_name), interrupt.flag()));
     display.clear();
 
     const std::vector<std::filesystem::path> written = write_report(report, folder);

@@ -18,6 +18,7 @@ CompareSettings compare_settings(const Arguments& arguments)
                         .relmse = arguments.number("max-relmse", 0, kMost),
                         .psnr = arguments.number("min-psnr", 0, kMost),
                         .ssim = arguments.number("min-ssim", -1, 1),
+                        .flip = arguments.number("max-flip", 0, 1),
                         .max = arguments.number("max-difference", 0, kMost),
                         .mean_relative = arguments.number("max-relative", 0, kMost)};
     return settings;

@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "engine/base/error.h"
+#include "engine/reference/post.h"
 #include "engine/reference/reference.h"
+#include "engine/render/post.h"
 #include "engine/render/render.h"
 #include "engine/scene/footprint.h"
 #include "engine/scene/knobs.h"
@@ -40,6 +44,14 @@ std::vector<StageTime> take_stages(Film& film)
     return stages;
 }
 
+/// Is the film's variance more than its error? Samples that know of each other scatter more than their mean errs
+/// (MC-8).
+bool is_bound(const Film& film)
+{
+    const auto settings = film.metadata.find("settings");
+    return settings != film.metadata.end() && settings->second.find(" sampler=sobol") != std::string::npos;
+}
+
 /// Everything needed to make the same film again.
 void describe(Film& film, const PosedScene& posed, const RenderSettings& settings)
 {
@@ -60,18 +72,43 @@ void describe(Film& film, const PosedScene& posed, const RenderSettings& setting
     for (const Knob& knob : knobs())
         if (knob.metric != KnobMetric::none) text += fmt::format(" {}={}", knob.name, knob_value(settings, knob.name));
     data["world_from_camera"] = describe(posed.view.world_from_camera);
+    const Camera& camera = posed.view.camera;
+    if (camera.lens)
+        data["lens"] = fmt::format("radius={} focus={} blades={}", camera.lens->aperture_radius,
+                                   camera.lens->focus_distance, camera.lens->blades);
+    if (camera.equirectangular || camera.orthographic)
+        data["projection"] = camera.equirectangular ? "equirectangular" : fmt::format("orthographic {}", camera.ymag);
     data["error"] = describe_error(film, settings.renderer);
 }
 
 }  // namespace
 
 Renderers::Renderers(const Arguments& arguments)
-    : options_(device_options(arguments)), memory_(limits(arguments).memory)
+    : options_(device_options(arguments)),
+      may_fall_back_(arguments.choice("backend") == 0 && options_.device.empty()),
+      memory_(limits(arguments).memory),
+      profile_(find_option(arguments.command(), "profile") != nullptr && arguments.has("profile"))
 {}
 
-gpu::Device& Renderers::device()
+gpu::Device& Renderers::device(Renderer renderer)
 {
-    if (!device_) device_.emplace(options_);
+    if (renderer == Renderer::path && options_.backend == gpu::Backend::opengl)
+        throw Error(Blame::input, "the path tracer draws by Vulkan alone, not by OpenGL",
+                    "leave out --backend opengl, or use --renderer reference");
+    if (device_ && !(renderer == Renderer::path && device_->backend() == gpu::Backend::opengl)) return *device_;
+    try {
+        device_.emplace(options_);
+    } catch (Error& vulkan) {
+        // The machine's lack is met here, because only here is it known what else may draw.
+        if (!may_fall_back_ || renderer != Renderer::raster || vulkan.blame() != Blame::machine) throw;
+        gpu::DeviceOptions other = options_;
+        other.backend = gpu::Backend::opengl;
+        try {
+            device_.emplace(other);
+        } catch (const Error& opengl) {
+            throw vulkan.at(fmt::format("--backend auto; OpenGL would not do either: {}", opengl.what()));
+        }
+    }
     return *device_;
 }
 
@@ -84,10 +121,11 @@ Drawn Renderers::draw(const std::string& scene_name, const PosedScene& posed, co
         check_memory(predict(posed, settings), memory_);
         switch (settings.renderer) {
             case Renderer::raster:
-                film = render_raster(device(), posed, required, settings, progress);
+                film = render_raster(device(settings.renderer), posed, required, settings, progress);
                 break;
             case Renderer::path:
-                film = render_path(device(), posed, required, settings, progress, checkpoints);
+                film = render_path(device(settings.renderer), posed, required, settings, progress, checkpoints,
+                                   profile_ ? KernelTimes::measured : KernelTimes::unknown);
                 break;
             case Renderer::reference:
                 film = reference::render_path(posed, required, settings, progress, checkpoints);
@@ -103,14 +141,48 @@ Drawn Renderers::draw(const std::string& scene_name, const PosedScene& posed, co
     Drawn drawn{.film = {}, .stages = take_stages(film)};
     describe(film, posed, settings);
     film.metadata["device"] = device_of(settings.renderer);
+    if (needs_device(settings.renderer)) film.metadata["backend"] = gpu::name(device(settings.renderer).backend());
     check_validation();
     drawn.film = std::move(film);
     return drawn;
 }
 
+Film Renderers::draw_again(const std::string& scene_name, const PosedScene& posed, const RenderSettings& settings,
+                           const Progress& progress)
+{
+    if (!needs_device(settings.renderer)) return draw(scene_name, posed, settings, progress).film;
+    const Footprint need = predict(posed, settings);
+    check_memory(need, memory_);
+    try {
+        // Half of the memory may hold scenes that wait for their next picture.
+        constexpr std::uint64_t kMostKept = 64;
+        const std::uint64_t each = std::max<std::uint64_t>(need.geometry + need.textures + need.picture, 1);
+        if (!prepared_)
+            prepared_.emplace(device(settings.renderer), posed,
+                              std::clamp<std::uint64_t>(memory_ / 2 / each, 1, kMostKept));
+        Film film = prepared_->draw(settings, progress);
+        check_validation();
+        return film;
+    } catch (Error& error) {
+        error.at(fmt::format("{}, {}", scene_name, label(settings.renderer)));
+        throw;
+    }
+}
+
+Film Renderers::post(Film film, const PostChain& chain, Renderer renderer, std::vector<StageTime>& stages)
+{
+    if (chain.empty()) return film;
+    film = needs_device(renderer) ? apply_post(device(Renderer::raster), std::move(film), chain)
+                                  : reference::apply_post(std::move(film), chain);
+    for (StageTime& stage : take_stages(film)) stages.push_back(std::move(stage));
+    check_validation();
+    film.metadata["error"] = describe_error(film, renderer);
+    return film;
+}
+
 std::string Renderers::device_of(Renderer renderer)
 {
-    return needs_device(renderer) ? device().description() : "CPU, double precision";
+    return needs_device(renderer) ? device(renderer).description() : "CPU, double precision";
 }
 
 RasterPrecision Renderers::raster_precision()
@@ -124,19 +196,23 @@ void Renderers::check_validation() const
     if (!device_ || !device_->validating()) return;
     const std::vector<std::string> messages = device_->validation_messages();
     if (messages.empty()) return;
-    throw Error(
-        Blame::machine,
-        fmt::format("the Vulkan validation layers found {} faults; the first: {}", messages.size(), messages.front()),
-        "this is a fault of etalon or of the driver: please report it with the output of `etalon info`");
+    throw Error(Blame::machine,
+                fmt::format("{} found {} faults; the first: {}",
+                            device_->backend() == gpu::Backend::vulkan ? "the Vulkan validation layers" : "OpenGL",
+                            messages.size(), messages.front()),
+                "this is a fault of etalon or of the driver: please report it with the output of `etalon info`");
 }
 
 std::string describe_error(const Film& film, Renderer renderer)
 {
     const std::optional<ErrorEstimate> error = estimate_error(film);
     const bool traced = renderer == Renderer::path || renderer == Renderer::reference;
-    if (!error) return traced ? "not known from one sample per pixel" : "not measured";
-    return fmt::format("{:.3g}% (95% interval {:.3g}% to {:.3g}%)", error->relative * 100, error->low * 100,
-                       error->high * 100);
+    const std::string bias = film.metadata.contains("degraded") ? ", without the bias of --degrade, not measured" : "";
+    if (!error && film.metadata.contains("post")) return "not measured after post passes";
+    if (!error) return (traced ? "not known from one sample per pixel" : "not measured") + bias;
+    const char* const at_most = traced && is_bound(film) ? "at most " : "";
+    return fmt::format("{}{:.3g}% (95% interval {:.3g}% to {:.3g}%){}", at_most, error->relative * 100,
+                       error->low * 100, error->high * 100, bias);
 }
 
 }  // namespace etalon::cli
