@@ -156,9 +156,17 @@ const Rows& develop_rows()
 const Rows& device_rows()
 {
     static const Rows rows = {
+        {.name = "backend",
+         .argument = "NAME",
+         .help =
+             "What draws: auto is Vulkan, and OpenGL for the rasterizer where Vulkan does not work and no device was "
+             "named",
+         .standard = "auto",
+         .choices = {"auto", "vulkan", "opengl"},
+         .heading = "Device"},
         {.name = "device",
          .argument = "N|NAME",
-         .help = "Vulkan device by its number in `etalon info` or part of its name",
+         .help = "Device of the backend by its number in `etalon info` or part of its name",
          .heading = "Device"},
         {.name = "require-device",
          .argument = "KIND",
@@ -166,7 +174,7 @@ const Rows& device_rows()
          .choices = {"cpu", "gpu"},
          .heading = "Device"},
         {.name = "validate",
-         .help = "Run under the Vulkan validation layers; any message of theirs is an error",
+         .help = "Run under the Vulkan validation layers, or listen to OpenGL's debug messages; any is an error",
          .heading = "Device"},
     };
     return rows;

@@ -152,6 +152,7 @@ DevelopSettings develop_settings(const Arguments& arguments)
 gpu::DeviceOptions device_options(const Arguments& arguments)
 {
     gpu::DeviceOptions options;
+    if (arguments.choice("backend") == 2) options.backend = gpu::Backend::opengl;
     options.device = arguments.text("device").value_or("");
     if (arguments.has("require-device"))
         options.kind = arguments.choice("require-device") == 0 ? gpu::DeviceKind::cpu : gpu::DeviceKind::gpu;
