@@ -305,12 +305,6 @@ bool needs_aovs(const PostChain& chain)
     return std::any_of(chain.begin(), chain.end(), [](const PostStage& stage) { return stage.pass().aovs; });
 }
 
-bool keeps_error(const PostChain& chain)
-{
-    return std::all_of(chain.begin(), chain.end(),
-                       [](const PostStage& stage) { return stage.pass().error == PostError::scaled; });
-}
-
 std::string range_of(const PostParameter& parameter)
 {
     if (parameter.least == 0 && parameter.most == 0) {

@@ -68,8 +68,6 @@ inline constexpr double kPostLeastSigma = 0.1;
 
 /// Whether a pass of the chain reads AOVs.
 bool needs_aovs(const PostChain& chain);
-/// Whether the film's variance is still that of its mean after the chain.
-bool keeps_error(const PostChain& chain);
 
 /// "0 to 30 pixels", "-100 to 100 EV or auto", "exact, separable or grid".
 std::string range_of(const PostParameter& parameter);

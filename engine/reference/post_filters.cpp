@@ -137,13 +137,13 @@ void sobel(PostPicture& picture, double gain)
 {
     replace_each(picture, [&](const PostPicture& from, int x, int y) {
         const dvec4 centre = from.at(x, y);
-        dvec2 gradient(0);
-        for (int dy = -1; dy <= 1; ++dy)
-            for (int dx = -1; dx <= 1; ++dx) {
-                const dvec4& there = from.at(x + dx, y + dy);
-                const double l = luminance(is_finite(there) ? there : centre);
-                gradient += l / 8 * dvec2(dx * (2 - std::abs(dy)), dy * (2 - std::abs(dx)));
-            }
+        const auto light = [&](int dx, int dy) {
+            const dvec4& there = from.at(x + dx, y + dy);
+            return luminance(is_finite(there) ? there : centre);
+        };
+        dvec2 gradient(0);  // of differences across, so that a constant has none to the last bit (I2)
+        for (int i = -1; i <= 1; ++i)
+            gradient += (2 - std::abs(i)) / 8.0 * dvec2(light(1, i) - light(-1, i), light(i, 1) - light(i, -1));
         return dvec4(dvec3(gain * std::hypot(gradient.x, gradient.y)), centre.w);
     });
 }

@@ -6,6 +6,9 @@
 namespace etalon::reference {
 namespace {
 
+/// What bends rows and columns alike, as a lone pixel or a diagonal beside constants does, is a row.
+constexpr double kTie = 1e-4;
+
 /// Roughly as bright as it looks.
 double luma_of(const dvec4& pixel)
 {
@@ -41,10 +44,10 @@ struct Neighbourhood {
         double down = 0, along = 0;
         for (int i = 0; i < 3; ++i) {
             const double weight = i == 1 ? 2 : 1;
-            down += weight * std::abs(l[0][i] + l[2][i] - 2 * l[1][i]);
-            along += weight * std::abs(l[i][0] + l[i][2] - 2 * l[i][1]);
+            down += weight * std::abs((l[0][i] - l[1][i]) + (l[2][i] - l[1][i]));
+            along += weight * std::abs((l[i][0] - l[i][1]) + (l[i][2] - l[i][1]));
         }
-        return down >= along;
+        return down + kTie >= along;
     }
 };
 

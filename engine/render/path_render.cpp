@@ -49,7 +49,8 @@ void trace(PathTracer& tracer, const RenderSettings& settings, const Progress& p
 }  // namespace
 
 Film render_path(gpu::Device& device, const PosedScene& posed, const Requirements& required,
-                 const RenderSettings& settings, const Progress& progress, const Checkpoints& checkpoints)
+                 const RenderSettings& settings, const Progress& progress, const Checkpoints& checkpoints,
+                 KernelTimes kernels)
 {
     check_samples(checkpoints, settings.spp);
     std::optional<PathSamples> kept;
@@ -62,6 +63,7 @@ Film render_path(gpu::Device& device, const PosedScene& posed, const Requirement
         std::optional<PathTracer> tracer;
         try {
             tracer.emplace(device, posed, required, settings, progress);
+            tracer->measure_kernels(kernels == KernelTimes::measured);
             const double preparing = seconds_since(begin);
             if (checkpoints.from != nullptr) tracer->resume(*checkpoints.from);
             if (kept) tracer->resume(*kept);
@@ -70,6 +72,8 @@ Film render_path(gpu::Device& device, const PosedScene& posed, const Requirement
             Film film = tracer->film();
             film.metadata["milliseconds.scene"] = fmt::format("{:.3f}", 1e3 * preparing);
             film.metadata["milliseconds.path tracing"] = fmt::format("{:.3f}", 1e3 * tracing);
+            for (const KernelTime& kernel : tracer->kernel_times())
+                film.metadata["milliseconds.kernel " + kernel.name] = fmt::format("{:.3f}", kernel.milliseconds);
             return film;
         } catch (const gpu::DeviceLost&) {
             if (renewed) throw;

@@ -14,12 +14,16 @@ namespace etalon {
 Film render_raster(gpu::Device& device, const PosedScene& posed, const Requirements& required,
                    const RenderSettings& settings, const Progress& progress);
 
+/// Whether the path tracer's kernels are timed one by one, each waiting for the one before. Changes no pixel.
+enum class KernelTimes { unknown, measured };
+
 /// The Vulkan compute path tracer: docs/shading.md §3. Bounded work per submit; stops within about 50 ms of device
 /// time when `progress` says so and returns what it has (PathTracer::stop_pass). When the device is lost it is renewed
 /// once, so that nothing else may be alive on it, and the picture goes on from the last 256 samples a pixel, to the
 /// same bits; a second loss is DeviceLost. With `checkpoints` it takes up a film and hands out its states: the same
 /// bits as in one run. Error(input) when the state has more samples than settings.spp.
 Film render_path(gpu::Device& device, const PosedScene& posed, const Requirements& required,
-                 const RenderSettings& settings, const Progress& progress, const Checkpoints& checkpoints = {});
+                 const RenderSettings& settings, const Progress& progress, const Checkpoints& checkpoints = {},
+                 KernelTimes kernels = KernelTimes::unknown);
 
 }  // namespace etalon

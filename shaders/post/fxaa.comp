@@ -8,6 +8,9 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(push_constant, scalar) uniform Push { PostFxaa push; };
 
+// A lone pixel and a diagonal beside constants bend rows and columns alike: that is a row, whatever the rounding.
+const float kTie = 1e-4;
+
 // Roughly as bright as it looks: the square root of luminance, which is right where the display's transfer is a square.
 float luma_of(vec4 c) { return sqrt(clamp(luminance(c.rgb), 0.0, 1.0)); }
 float luma(ivec2 at, float otherwise)
@@ -15,6 +18,9 @@ float luma(ivec2 at, float otherwise)
     const vec4 c = pixel(at, push.size);
     return is_finite(c) ? luma_of(c) : otherwise;
 }
+
+// The second difference.
+float bend(float a, float middle, float b) { return abs((a - middle) + (b - middle)); }
 
 // Steps along the edge until its contrast changes, at most push.reach; what the luma differs by there.
 int steps_to_end(ivec2 at, ivec2 along, ivec2 across, float own, float middle, float enough, out float difference)
@@ -49,11 +55,11 @@ void main()
     const float softened = lone * lone * (3.0 - 2.0 * lone);
     const float subpixel = softened * softened * push.subpixel;
 
-    const float rows = abs(l[0][0] + l[2][0] - 2.0 * l[1][0]) + 2.0 * abs(l[0][1] + l[2][1] - 2.0 * own) +
-                       abs(l[0][2] + l[2][2] - 2.0 * l[1][2]);
-    const float columns = abs(l[0][0] + l[0][2] - 2.0 * l[0][1]) + 2.0 * abs(l[1][0] + l[1][2] - 2.0 * own) +
-                          abs(l[2][0] + l[2][2] - 2.0 * l[2][1]);
-    const bool horizontal = rows >= columns;
+    const float rows =
+        bend(l[0][0], l[1][0], l[2][0]) + 2.0 * bend(l[0][1], own, l[2][1]) + bend(l[0][2], l[1][2], l[2][2]);
+    const float columns =
+        bend(l[0][0], l[0][1], l[0][2]) + 2.0 * bend(l[1][0], own, l[1][2]) + bend(l[2][0], l[2][1], l[2][2]);
+    const bool horizontal = rows + kTie >= columns;
     const float before = horizontal ? l[0][1] : l[1][0], after = horizontal ? l[2][1] : l[1][2];
     const bool towards_before = abs(before - own) >= abs(after - own);
     const float across_luma = towards_before ? before : after;

@@ -27,6 +27,13 @@ std::string sentence(const Option& option)
     return text;
 }
 
+std::string rows(const Option& option)
+{
+    std::string text = row(spelling(option), sentence(option));
+    for (const Detail& detail : option.details) text += row("    " + detail.name, detail.text);
+    return text;
+}
+
 std::vector<std::string> headings(const Command& command)
 {
     std::vector<std::string> all;
@@ -79,7 +86,7 @@ std::string help(const Command& command)
     for (const std::string& heading : headings(command)) {
         text += fmt::format("\n{}:\n", heading);
         for (const Option& option : command.options)
-            if (option.heading == heading) text += row(spelling(option), sentence(option));
+            if (option.heading == heading) text += rows(option);
     }
     text += "\nExamples:\n";
     for (const Example& example : command.examples) text += fmt::format("  {}\n      {}\n", example.line, example.why);

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "engine/base/error.h"
+
 namespace etalon::cli {
 namespace {
 
@@ -82,6 +84,12 @@ Json Json::raw(std::string text)
     Json json;
     json.text_ = std::move(text);
     return json;
+}
+
+Json as_json(const Error& error)
+{
+    return Json::object(
+        {{"what", error.what()}, {"where", error.where()}, {"mend", error.mend()}, {"exit_code", error.exit_code()}});
 }
 
 }  // namespace etalon::cli

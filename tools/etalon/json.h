@@ -6,6 +6,10 @@
 #include <string_view>
 #include <vector>
 
+namespace etalon {
+class Error;
+}
+
 namespace etalon::cli {
 
 /// Text between quotes as JSON wants it; bytes that are not UTF-8 become U+FFFD.
@@ -44,5 +48,8 @@ class Json {
  private:
     std::string text_ = "null";
 };
+
+/// A failure as --json says it: what, where, mend and exit code.
+Json as_json(const Error& error);
 
 }  // namespace etalon::cli

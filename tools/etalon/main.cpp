@@ -47,28 +47,11 @@ int run(const std::vector<std::string>& words)
     return command->run(arguments);
 }
 
-std::string coloured(std::string message)
-{
-    constexpr std::string_view kName = "etalon:";
-    if (Terminal::of_standard_error().colour && message.starts_with(kName))
-        message.replace(0, kName.size(), "\033[31metalon:\033[0m");
-    return message;
-}
-
-Json as_json(const Error& error)
-{
-    return Json::object({{"schema", "etalon-error/1"},
-                         {"error", Json::object({{"what", error.what()},
-                                                 {"where", error.where()},
-                                                 {"mend", error.mend()},
-                                                 {"exit_code", error.exit_code()}})}});
-}
-
 int fail(const Error& error, bool json) noexcept
 {
-    say(coloured(error.message()));
+    say(error);
     try {
-        if (json) put(as_json(error).text() + "\n");
+        if (json) put(Json::object({{"schema", "etalon-error/1"}, {"error", as_json(error)}}).text() + "\n");
     } catch (const Error&) {
         // Standard output is what failed: the lines above have said so.
     }

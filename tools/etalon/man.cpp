@@ -28,7 +28,12 @@ std::string option_entry(const Option& option)
     std::string text = fmt::format(".TP\n.B {}\n{}", roff(spelling(option)), roff(option.help));
     if (!option.choices.empty()) text += roff(fmt::format(": {}", fmt::join(option.choices, ", ")));
     if (!option.standard.empty()) text += roff(fmt::format(" [{}]", option.standard));
-    return text + ".\n";
+    text += ".\n";
+    if (option.details.empty()) return text;
+    text += ".RS\n";
+    for (const Detail& detail : option.details)
+        text += fmt::format(".TP\n.B {}\n{}\n", roff(detail.name), roff(detail.text));
+    return text + ".RE\n";
 }
 
 std::string command_section(const Command& command)

@@ -1,5 +1,8 @@
 #include "tools/etalon/option_rows.h"
 
+#include <fmt/format.h>
+
+#include "engine/image/post.h"
 #include "tools/etalon/knob_options.h"
 
 namespace etalon::cli {
@@ -22,6 +25,18 @@ const Rows& view_rows()
         {.name = "orbit",
          .argument = "AZ,EL[,DIST]",
          .help = "Look at the scene's centre from this azimuth and elevation in degrees, this far in metres",
+         .heading = "View"},
+        {.name = "projection",
+         .argument = "KIND",
+         .help = "camera: as the camera has it; orthographic: as large as what is as far away as the scene's centre; "
+                 "equirectangular: all directions, for path tracers",
+         .standard = "camera",
+         .choices = {"camera", "orthographic", "equirectangular"},
+         .heading = "View"},
+        {.name = "lens",
+         .argument = "F[,FOCUS[,BLADES]]",
+         .help = "Path tracers: a lens of this f-stop (on a film 24 mm high), focused at FOCUS metres (the scene's "
+                 "centre when absent), with a polygonal aperture of 3 to 64 BLADES (round when absent)",
          .heading = "View"},
     };
     return rows;
@@ -135,6 +150,36 @@ const Rows& part_rows()
     return rows;
 }
 
+namespace {
+
+/// Of every pass and each of its parameters, as the table has them.
+std::vector<Detail> post_details()
+{
+    std::vector<Detail> details;
+    for (const PostPass& pass : post_passes()) {
+        details.push_back({std::string(pass.name), std::string(pass.what)});
+        for (const PostParameter& parameter : pass.parameters)
+            details.push_back({fmt::format("  {}={}", parameter.name, value_text(parameter, parameter.standard)),
+                               fmt::format("{} ({})", parameter.what, range_of(parameter))});
+    }
+    return details;
+}
+
+}  // namespace
+
+const Rows& post_rows()
+{
+    static const Rows rows = {
+        {.name = "post",
+         .argument = "PASSES",
+         .help = "Passes over the finished film, in the order given: sobel,bilateral:sigma_s=3,sigma_r=0.1. Unless all "
+                 "of them scale it, the picture's error is no longer known. Passes, their parameters and standards",
+         .heading = "Picture",
+         .details = post_details()},
+    };
+    return rows;
+}
+
 const Rows& develop_rows()
 {
     static const Rows rows = {
@@ -147,7 +192,7 @@ const Rows& develop_rows()
          .argument = "CURVE",
          .help = "Curve from radiance to the display",
          .standard = "none",
-         .choices = {"none", "aces", "neutral"},
+         .choices = {"none", "aces", "neutral", "reinhard", "agx"},
          .heading = "Picture"},
     };
     return rows;

@@ -14,6 +14,7 @@ const Rows& shading_rows();
 const Rows& sampling_rows();  ///< the knob table and the seed
 const Rows& part_rows();
 const Rows& develop_rows();
+const Rows& post_rows();  ///< what is done to a film before it is developed
 const Rows& device_rows();
 const Rows& load_rows();
 const Rows& json_rows();

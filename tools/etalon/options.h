@@ -13,6 +13,12 @@ class Arguments;
 /// What a shell may offer after an option or in place of an argument.
 enum class Completes { nothing, scene, file, folder };
 
+/// A line of help below an option's: a name and what it means.
+struct Detail {
+    std::string name;
+    std::string text;
+};
+
 /// One option of a command. The parser, the help, the completions and the man page are all made from these rows.
 struct Option {
     std::string name;                  ///< without dashes: "size" is --size
@@ -22,8 +28,9 @@ struct Option {
     std::string standard;              ///< value when absent, as text; empty: none, or said in the help
     std::vector<std::string> choices;  ///< the only values; empty: any
     Completes completes = Completes::nothing;
-    bool repeats = false;  ///< may be given several times
-    std::string heading;   ///< under which the help shows it: "View"
+    bool repeats = false;              ///< may be given several times
+    std::string heading;               ///< under which the help shows it: "View"
+    std::vector<Detail> details = {};  ///< what the help says of the words that the option's value is made of
 };
 
 struct Example {
@@ -62,6 +69,7 @@ int stability(const Arguments& arguments);
 int diff(const Arguments& arguments);
 int explain(const Arguments& arguments);
 int info(const Arguments& arguments);
+int post(const Arguments& arguments);
 int view(const Arguments& arguments);
 int completion(const Arguments& arguments);
 int man(const Arguments& arguments);

@@ -52,7 +52,7 @@ void write_output(const Film& film, const DevelopSettings& settings, const std::
         write_film(film, path);
         return;
     }
-    constexpr std::string_view kTones[] = {"none", "aces", "neutral"};
+    constexpr std::string_view kTones[] = {"none", "aces", "neutral", "reinhard", "agx"};
     std::map<std::string, std::string> metadata = film.metadata;
     metadata["develop"] =
         fmt::format("exposure={} tone={}", settings.exposure, kTones[static_cast<int>(settings.tone)]);

@@ -8,6 +8,7 @@
 #include "engine/base/error.h"
 #include "engine/scene/environment.h"
 #include "engine/scene/footprint.h"
+#include "tools/etalon/checkpoints.h"
 #include "tools/etalon/knob_options.h"
 
 namespace etalon::cli {
@@ -62,6 +63,27 @@ std::optional<Orbit> parse_orbit(const Arguments& arguments)
         orbit.distance = numbers[2];
     }
     return orbit;
+}
+
+std::optional<LensSettings> parse_lens(const Arguments& arguments)
+{
+    const std::optional<std::string> value = arguments.text("lens");
+    if (!value) return std::nullopt;
+    const std::vector<std::string> parts = split(*value, ',');
+    std::vector<double> numbers;
+    for (const std::string& part : parts)
+        if (const auto number = parse_number(part)) numbers.push_back(*number);
+    if (numbers.size() != parts.size() || numbers.size() > 3)
+        refuse("lens", *value, "F-STOP[,FOCUS[,BLADES]]", "for example --lens 2.8,1.5,6");
+    if (!(numbers[0] > 0)) refuse("lens", *value, "an f-stop above 0");
+    LensSettings lens{.f_stop = numbers[0], .focus = {}};
+    if (numbers.size() > 1 && !(numbers[1] > 0)) refuse("lens", *value, "a focus above 0 metres");
+    if (numbers.size() > 1) lens.focus = numbers[1];
+    if (numbers.size() < 3) return lens;
+    lens.blades = static_cast<int>(numbers[2]);
+    if (numbers[2] != std::floor(numbers[2]) || numbers[2] < 3 || numbers[2] > 64)
+        refuse("lens", *value, "3 to 64 blades", "leave them out for a round aperture");
+    return lens;
 }
 
 void read_environment(const Arguments& arguments, PoseSettings& settings)
@@ -119,9 +141,13 @@ PoseSettings pose_settings(const Arguments& arguments)
     settings.orbit = parse_orbit(arguments);
     if (settings.camera && settings.orbit)
         throw Error(Blame::input, "--camera and --orbit exclude each other", "give one of them");
+    settings.lens = parse_lens(arguments);
+    constexpr Projection kProjections[] = {Projection::camera, Projection::orthographic, Projection::equirectangular};
+    settings.projection = kProjections[arguments.choice("projection")];
     settings.size = parse_size(arguments);
     settings.time = arguments.number("time", -1e9, 1e9);
     settings.animation = arguments.text("animation");
+    settings.limits = limits(arguments);
     read_environment(arguments, settings);
     return settings;
 }
@@ -139,13 +165,14 @@ RenderSettings render_settings(const Arguments& arguments)
     settings.seed = arguments.count("seed", 0, ~std::uint64_t{0}).value_or(0);
     settings.aovs = arguments.has("aovs");
     read_background(arguments, settings);
+    if (find_option(arguments.command(), "shard") != nullptr) settings.shard = shard(arguments);
     apply_knobs(arguments, settings);
     return settings;
 }
 
 DevelopSettings develop_settings(const Arguments& arguments)
 {
-    constexpr Tone kTones[] = {Tone::none, Tone::aces, Tone::neutral};
+    constexpr Tone kTones[] = {Tone::none, Tone::aces, Tone::neutral, Tone::reinhard, Tone::agx};
     return {.exposure = arguments.number("exposure", -100, 100).value_or(0), .tone = kTones[arguments.choice("tone")]};
 }
 
@@ -177,6 +204,7 @@ Limits limits(const Arguments& arguments)
 void check_picture(const Arguments& arguments)
 {
     if (find_option(arguments.command(), "spp") == nullptr) return;  // a command that draws nothing
+    if (find_option(arguments.command(), "degrade") != nullptr && arguments.has("degrade")) return;
     if (const auto size = parse_size(arguments))
         check_memory(predict(*size, render_settings(arguments)), limits(arguments).memory);
 }

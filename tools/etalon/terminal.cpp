@@ -68,6 +68,15 @@ void warn(const Terminal& terminal, std::string_view line)
     say(fmt::format("{} {}", terminal.colour ? "\033[33mwarning:\033[0m" : "warning:", line));
 }
 
+void say(const Error& error)
+{
+    std::string message = error.message();
+    constexpr std::string_view kName = "etalon:";
+    if (Terminal::of_standard_error().colour && message.starts_with(kName))
+        message.replace(0, kName.size(), "\033[31metalon:\033[0m");
+    say(message);
+}
+
 void put(std::string_view text)
 {
     write_stdout(text.data(), text.size());

@@ -4,6 +4,10 @@
 #include <string>
 #include <string_view>
 
+namespace etalon {
+class Error;
+}
+
 namespace etalon::cli {
 
 /// Puts something in the place of standard streams that were closed when the program began, else the next file to be
@@ -23,6 +27,9 @@ struct Terminal {
 void say(std::string_view line);
 /// The same with "warning: " in yellow before it.
 void warn(const Terminal& terminal, std::string_view line);
+
+/// A failure with where it was met and how it is mended, the program's name in red.
+void say(const Error& error);
 
 /// Writes to standard output. A reader that closed the pipe is no failure; any other is Error(machine).
 void put(std::string_view text);
