@@ -77,6 +77,9 @@ DracoMesh decode_draco(std::span<const std::byte> payload, std::span<const Draco
             throw bad(fmt::format("Draco: attribute {} has {} elements of {} numbers; its accessor has {} of {}",
                                   wish.id, mesh.num_points(), attribute->num_components(), wish.count,
                                   wish.components));
+        // Its conversion reads bytes of the payload as bool, whatever they are; glTF has no such type.
+        if (attribute->data_type() == draco::DT_BOOL)
+            throw bad(fmt::format("Draco: attribute {} holds truth values", wish.id));
         out.attributes.push_back(values(*attribute, wish));
     }
     return out;

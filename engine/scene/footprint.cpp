@@ -20,9 +20,9 @@ struct Costs {
     double texel;           ///< bytes for a texel of 8 bits a channel
 };
 constexpr double kMiB = 1 << 20;
-constexpr Costs kRaster{290 * kMiB, 45, 26, 3.6, 0, 20};
-constexpr Costs kPath{375 * kMiB, 229, 0, 1, 136, 12};
-constexpr Costs kReference{134 * kMiB, 160, 0, 1, 316, 8};
+constexpr Costs kRaster{220 * kMiB, 20, 24, 3.6, 0, 20};
+constexpr Costs kPath{210 * kMiB, 190, 0, 1, 136, 12};
+constexpr Costs kReference{134 * kMiB, 115, 0, 1, 316, 8};
 constexpr Costs kReferenceRaster{134 * kMiB, 39, 0, 1, 468, 16};
 constexpr double kAovs = 200;  ///< bytes a pixel, with the EXR that is made of them
 

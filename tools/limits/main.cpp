@@ -44,12 +44,16 @@ input: exit code 2, with the place in the file.
 ## Memory
 `--memory N` (as `800M` or `4G`) is what a run may need in all; by default three quarters of the machine's memory, or of what its control group
 (version 1 or 2) or the limit on its address space leave. What it will need is predicted, from the size of the picture before anything is read, and from the
-scene before a device is made; more than N is refused with both figures and exit code 3. `--limits none` lifts this too.
+scene before a device is made; more than N is refused with both figures and exit code 3. `--limits none` lifts this too. `etalon info SCENE` shows what each renderer would need.
+
+With `render --degrade` what needs more is made smaller instead: the sides of all textures or those of the picture, whichever take more, are halved until it fits. A warning, `--json` and the
+metadata of the picture then say what was given up and how far it changes the texels (RMS, relative to their mean); the picture's error says that it does not hold this bias, which nobody
+has measured. A scene is still read whole first, as far as the limits above let it.
 
 | held for | raster | path | reference | reference-raster |
 | --- | --: | --: | --: | --: |
-| libraries, driver and compiler, MiB | 290 | 375 | 134 | 134 |
-| a pixel, bytes | 45 + 26 a sample | 229 | 160 | 39 |
+| libraries, driver and compiler, MiB | 220 | 210 | 134 | 134 |
+| a pixel, bytes | 20 + 24 a sample | 190 | 115 | 39 |
 | … with `--aovs` | + 200 | + 200 | + 200 | + 200 |
 | a byte of vertex attributes and indices, bytes | 3.6 | 1 | 1 | 1 |
 | a triangle each time it is shown, bytes | – | 136 | 316 | 468 |
