@@ -45,12 +45,27 @@ Json error_json(const Film& film)
     return {{"relative", number(error->relative)}, {"low", number(error->low)}, {"high", number(error->high)}};
 }
 
+/// Over pixels and channels that are finite.
+double mean_radiance(const Film& film)
+{
+    double sum = 0, count = 0;
+    for (const vec3& value : film.mean) {
+        for (int c = 0; c < 3; ++c) {
+            if (!std::isfinite(value[c])) continue;
+            sum += double(value[c]);
+            ++count;
+        }
+    }
+    return count > 0 ? sum / count : 0;
+}
+
 Json film_json(const Film& film)
 {
     const FilmCheck checked = check(film);
     return {{"width", film.width},
             {"height", film.height},
             {"samples", film.samples},
+            {"mean_radiance", number(mean_radiance(film))},
             {"error_measured", !film.variance.empty()},
             {"error", error_json(film)},
             {"nonfinite_samples", film.nonfinite},

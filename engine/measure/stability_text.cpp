@@ -26,13 +26,13 @@ std::string break_text(const StabilityRow& row)
     return size ? size_text(row, *size) : "not found";
 }
 
-/// Why the smallest size that broke did.
+/// Why the smallest size that broke did; of a path tracer that holds, what its one trial found, if it said so.
 std::string reason(const StabilityRow& row)
 {
     const std::optional<double> size = row.breaks_at();
     for (const Probe& probe : row.probes)
         if (size && probe.size == *size && !probe.holds) return probe.why;
-    return {};
+    return !size && row.renderer == Renderer::path && row.probes.size() == 1 ? row.probes.front().why : "";
 }
 
 }  // namespace

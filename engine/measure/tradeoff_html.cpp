@@ -153,7 +153,7 @@ svg { width: 100%; height: auto; } svg text { fill: currentColor; font-size: 12p
 .grid-lines line { stroke: var(--line); } polyline { fill: none; stroke: var(--good); stroke-width: 2; }
 .whisker { stroke: currentColor; opacity: .4; } circle { stroke: var(--soft); cursor: pointer; }
 circle.path { fill: #2f81f7; } circle.raster { fill: #db6d28; } circle.best { stroke: var(--good); stroke-width: 3; }
-circle:focus { outline: 2px solid currentColor; }
+.grid[hidden] { display: none; } circle:focus { outline: 2px solid currentColor; }
 )css";
 
 constexpr std::string_view kPlotScript = R"js(
