@@ -29,6 +29,7 @@ BREACHES = {
     "two includers of a heavy header": ("tools/a.cpp", "#include <CLI/CLI.hpp>\n", "single includer"),
     "JSON in a room that has no format": ("engine/render/a.cpp", "#include <nlohmann/json.hpp>\n", "single includer"),
     "an equation that is stated nowhere": ("shaders/lib/a.glsl", "// (SH-99)\n", "equations"),
+    "a knob that no run has measured": ("docs/tradeoffs.md", "# Knobs\n<!-- measured: begin -->\n<!-- measured: end -->\n", "knobs"),
     "a link that leads nowhere": ("docs/a.md", "[x](absent.md)\n", "links"),
     "an anchor that is not there": ("docs/a.md", "[x](shading.md#absent)\n", "links"),
     "code switched off": ("engine/base/a.cpp", "#if 0\n#endif\n", "disabled"),
