@@ -200,6 +200,8 @@ std::vector<DeviceReport> list_gl_devices(const DeviceOptions& options)
 
 GlDevice::GlDevice(const DeviceOptions& options) : validating_(options.validate)
 {
+    if (options.make_surface)
+        throw Error(Blame::input, "windows are drawn to by Vulkan alone, not by OpenGL", "leave out --backend opengl");
     std::string reasons;
     for (const gl::ContextKind kind : gl::kContextKinds) {
         DeviceReport& report = candidates_.emplace_back();

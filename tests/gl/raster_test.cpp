@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iostream>
 
+#include "engine/render/post.h"
 #include "engine/render/render.h"
 #include "engine/scene/load.h"
 
@@ -146,6 +147,21 @@ TEST_F(GlRaster, every_setting_is_what_vulkan_draws)
     wide.point_size = 3;
     wide.line_width = 2;
     expect_same("wide points and lines", pose(wires, small), wide);
+}
+
+TEST_F(GlRaster, post_passes_make_of_a_film_what_they_make_by_vulkan)
+{
+    const Scene scene = make_builtin("spheres");
+    const PosedScene posed = pose(scene, {.size = ivec2(48, 36)});
+    const Film film = draw(vulkan_, posed, {.aovs = true});
+    for (const char* passes : {"gaussian", "median", "bilateral:sigma_s=2", "atrous", "bloom", "sobel", "fxaa",
+                               "exposure,tone", "bilateral:method=grid"}) {
+        const PostChain chain = parse_post(passes);
+        const Film a = apply_post(vulkan_, film, chain);
+        const Film b = apply_post(opengl_, film, chain);
+        const Difference found = difference(a, b, {});
+        EXPECT_LE(found.worst, 1) << passes << ": " << found.largest << " of the brightest";
+    }
 }
 
 TEST_F(GlRaster, osmesa_draws_the_bits_of_egl)
