@@ -57,10 +57,10 @@ RasterMaterial raster_material(const Material& material, const MaterialPoint& po
     return m;
 }
 
-double roughness_with_spread(double roughness, double size, double scale)
+double roughness_with_spread(double roughness, double size, double scale, double minified)
 {
-    // 0.007: the codes of 8 bits leave unit normals as short as that.
-    const double spread = size > 0 ? 2 * scale * scale * std::max(0.0, 1 / size - 1.007) : 0;
+    // 10⁻⁴: what 16 bits leave of unit normals.
+    const double spread = size > 0 ? 2 * minified * scale * scale * std::max(0.0, 1 / size - 1.0001) : 0;
     if (spread == 0) return roughness;
     const double alpha = std::max(roughness * roughness, 1e-3);
     return std::sqrt(std::min(1.0, std::sqrt(alpha * alpha + spread)));
@@ -211,9 +211,11 @@ std::optional<Shaded> RasterShader::shade(const Fragment& fragment, const Pictur
     const Material& material = *fragment.material;
     MaterialPoint point = evaluate(material, world_->textures, fragment.attributes);
     if (is_gltf_model(material) && material.normal_texture.present() && fragment.attributes.tangent != dvec4(0)) {
-        const dvec4 texel = world_->textures.sample(material.normal_texture, Coding::linear, fragment.attributes.at);
+        const dvec4 texel = world_->textures.sample(material.normal_texture, Coding::normal, fragment.attributes.at);
         const double size = length(2.0 * dvec3(texel) - 1.0);
-        point.roughness = roughness_with_spread(point.roughness, size, material.normal_scale);
+        const double level = world_->textures.level(material.normal_texture, Coding::normal, fragment.attributes.at);
+        point.roughness =
+            roughness_with_spread(point.roughness, size, material.normal_scale, std::clamp(level, 0.0, 1.0));
     }
     if (material.alpha_mode == AlphaMode::mask && point.alpha < material.alpha_cutoff) return std::nullopt;
     Shaded out;

@@ -90,8 +90,9 @@ struct RasterMaterial {
 };
 RasterMaterial raster_material(const Material& material, const MaterialPoint& point);
 
-/// (TX-7) Perceptual roughness with what the normals add that a texel of length `size` is the mean of.
-double roughness_with_spread(double roughness, double size, double scale);
+/// (TX-7) Perceptual roughness with what the normals add that a texel of length `size` is the mean of; `minified`: the
+/// level, at most 1.
+double roughness_with_spread(double roughness, double size, double scale, double minified);
 
 /// f(wo, wi) n·wi with n·wo clamped to `n_o`; 0 unless n·wi > 0. (SH-31), or (SH-38).
 dvec3 reflect_pbr(const RasterMaterial& m, const dvec3& n, const dvec3& wo, const dvec3& wi, double n_o);

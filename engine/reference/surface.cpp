@@ -153,7 +153,9 @@ dvec3 mapped_normal(const TextureUse& map, double scale, const TextureSet& textu
 {
     const dvec3 n = normalized_or(attributes.normal, ng);
     if (!map.present() || attributes.tangent.w == 0) return n;
-    const dvec3 texel = 2.0 * dvec3(textures.sample(map, Coding::linear, attributes.at)) - 1.0;
+    const dvec3 texel = 2.0 * dvec3(textures.sample(map, attributes.at.has_footprint ? Coding::normal : Coding::linear,
+                                                    attributes.at)) -
+                        1.0;
     const dvec3 t = normalized_or(dvec3(attributes.tangent), dvec3(0));
     const dvec3 b = cross(n, t) * attributes.tangent.w;
     return normalized_or(scale * (texel.x * t + texel.y * b) + texel.z * n, n);

@@ -73,6 +73,18 @@ ivec2 MipChain::size(int level) const
     return level == 0 ? ivec2(texels_->width, texels_->height) : coarser_[static_cast<std::size_t>(level - 1)].size;
 }
 
+namespace {
+
+// (TX-7)
+dvec4 made_unit(const dvec4& texel)
+{
+    const dvec3 n = 2.0 * dvec3(texel) - 1.0;
+    const double size = length(n);
+    return size > 0 && std::isfinite(size) ? dvec4(0.5 + 0.5 / size * n, texel.w) : texel;
+}
+
+}  // namespace
+
 dvec4 MipChain::texel(int level, int x, int y) const
 {
     const std::size_t at =
@@ -81,11 +93,14 @@ dvec4 MipChain::texel(int level, int x, int y) const
     if (texels_->is_8_bit) {
         const std::uint8_t* code = texels_->bytes.data() + 4 * at;
         const double alpha = code[3] / 255.0;
-        if (coding_ == Coding::linear) return {code[0] / 255.0, code[1] / 255.0, code[2] / 255.0, alpha};
+        const dvec4 plain(code[0] / 255.0, code[1] / 255.0, code[2] / 255.0, alpha);
+        if (coding_ == Coding::normal) return made_unit(plain);
+        if (coding_ == Coding::linear) return plain;
         const auto& decode = linear_from_byte();
         return {decode[code[0]], decode[code[1]], decode[code[2]], alpha};
     }
     const float* code = texels_->wide.data() + 4 * at;
+    if (coding_ == Coding::normal) return made_unit({code[0], code[1], code[2], code[3]});
     if (coding_ == Coding::linear) return {code[0], code[1], code[2], code[3]};
     return {linear_from_coded(code[0]), linear_from_coded(code[1]), linear_from_coded(code[2]), code[3]};
 }
@@ -156,7 +171,7 @@ dvec4 sample_mips(const MipChain& mips, const Sampler& sampler, const dvec2& uv,
 
 TextureSet::TextureSet(const Scene& scene, const std::vector<bool>& used, bool mipmaps) : scene_(&scene)
 {
-    by_texture_.resize(scene.textures.size(), {nullptr, nullptr});
+    by_texture_.resize(scene.textures.size(), {nullptr, nullptr, nullptr});
     const auto add = [&](const TextureUse& use, Coding coding) {
         if (!use.present() || use.texture >= scene.textures.size()) return;
         if (!used.empty() && !used[use.texture]) return;
@@ -173,9 +188,11 @@ TextureSet::TextureSet(const Scene& scene, const std::vector<bool>& used, bool m
         add(material.metallic_roughness_texture,
             material.model == BsdfModel::specular_glossiness ? Coding::srgb : Coding::linear);
         add(material.normal_texture, Coding::linear);
+        add(material.normal_texture, Coding::normal);
         add(material.occlusion_texture, Coding::linear);
         if (!material.layers) continue;
         const MaterialLayers& layers = *material.layers;
+        add(layers.clearcoat_normal_texture, Coding::normal);
         for (const TextureUse* use :
              {&layers.specular_color_texture, &layers.sheen_color_texture, &layers.diffuse_transmission_color_texture})
             add(*use, Coding::srgb);
@@ -243,6 +260,18 @@ dvec4 TextureSet::sample(const TextureUse& use, Coding coding, const TexturePoin
         sum += sample_mips(*mips, sampler, probe, mip_level(step, step, levels));
     }
     return sum / static_cast<double>(probes.count);
+}
+
+double TextureSet::level(const TextureUse& use, Coding coding, const TexturePoint& at) const
+{
+    if (!use.present() || use.texture >= by_texture_.size() || !at.has_footprint) return 0;
+    const MipChain* mips = by_texture_[use.texture][static_cast<std::size_t>(coding)];
+    if (mips == nullptr) return 0;
+    const auto set = static_cast<std::size_t>(use.uv_set == 1 ? 1 : 0);
+    const dvec2 size(mips->size(0));
+    const dvec2 dx = dvec2(use.transform * dvec3(at.uv_dx[set], 0)) * size;
+    const dvec2 dy = dvec2(use.transform * dvec3(at.uv_dy[set], 0)) * size;
+    return mip_level(dx, dy, std::max(2, mips->levels()));
 }
 
 }  // namespace etalon::reference

@@ -9,8 +9,8 @@
 
 namespace etalon::reference {
 
-/// How a texel's colour is coded; alpha is linear always. (TX-5)
-enum class Coding { linear, srgb };
+/// How a texel's colour is coded; alpha is linear always. (TX-5) normal: a unit vector, for rasterizers (TX-7).
+enum class Coding { linear, srgb, normal };
 
 /// Where a texture is read: the vertex uv sets, and how they change to the next pixel in x and y (zero: level 0).
 struct TexturePoint {
@@ -80,13 +80,15 @@ class TextureSet {
 
     /// The texture of `use` at `at`; (1, 1, 1, 1) where there is none.
     dvec4 sample(const TextureUse& use, Coding coding, const TexturePoint& at) const;
+    /// The level at which that would be read without probes (TX-2); 0 where there is no texture or no footprint.
+    double level(const TextureUse& use, Coding coding, const TexturePoint& at) const;
 
  private:
     const Scene* scene_;
     TextureFilter filter_ = TextureFilter::file;
     int most_probes_ = 1;
     std::map<std::pair<Index, Coding>, MipChain> chains_;  // by image
-    std::vector<std::array<const MipChain*, 2>> by_texture_;
+    std::vector<std::array<const MipChain*, 3>> by_texture_;
 };
 
 }  // namespace etalon::reference

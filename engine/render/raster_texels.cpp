@@ -1,6 +1,7 @@
 #include "engine/render/raster_texels.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
@@ -13,6 +14,18 @@ std::uint16_t quantized(float value)
 {
     // The comparison is false for NaN, which becomes 0.
     return value > 0 ? static_cast<std::uint16_t>(std::min(double{value}, 1.0) * 65535 + 0.5) : std::uint16_t{0};
+}
+
+/// Every texel's vector 2 rgb - 1.
+void make_unit(Image& image)
+{
+    for (std::size_t i = 0; i < image.pixel_count(); ++i) {
+        float* rgb = image.values.data() + 4 * i;
+        const dvec3 n = 2.0 * dvec3(vec3(rgb[0], rgb[1], rgb[2])) - 1.0;
+        const double size = length(n);
+        if (!(size > 0) || !std::isfinite(size)) continue;
+        for (int c = 0; c < 3; ++c) rgb[c] = static_cast<float>(0.5 + 0.5 * n[c] / size);
+    }
 }
 
 MipChain::Level quantize(const Image& image, unsigned threads)
@@ -35,6 +48,7 @@ MipChain decode_mips(const Texels& texels, Coding coding, bool all_levels, unsig
     assume(texels.width > 0 && texels.height > 0);
     MipChain chain;
     Image level0 = linear_image(texels, coding == Coding::srgb);
+    if (coding == Coding::normal) make_unit(level0);
     if (!all_levels) {
         chain.levels.push_back(quantize(level0, threads));
         return chain;

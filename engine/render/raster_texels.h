@@ -6,8 +6,9 @@
 
 namespace etalon {
 
-/// How the colour channels of a texture are coded; alpha is linear always.
-enum class Coding { linear, srgb };
+/// How the colour channels of a texture are coded; alpha is linear always. normal: a unit vector, which is made one
+/// before it is filtered (TX-7).
+enum class Coding { linear, srgb, normal };
 
 /// A texture in linear light, RGBA, 16 bits a channel (value × 65535, rounded), from level 0 down to 1×1.
 struct MipChain {

@@ -74,7 +74,7 @@ std::vector<RasterTextures::Slot> RasterTextures::slots(const Material& material
     std::vector<Slot> all{slot(C::base_color_texture, material.base_color_texture, Coding::srgb),
                           slot(C::metallic_roughness_texture, material.metallic_roughness_texture,
                                glossy ? Coding::srgb : Coding::linear),
-                          slot(C::normal_texture, material.normal_texture, Coding::linear),
+                          slot(C::normal_texture, material.normal_texture, Coding::normal),
                           slot(C::occlusion_texture, material.occlusion_texture, Coding::linear),
                           slot(C::emissive_texture, material.emissive_texture, Coding::srgb)};
     for (std::uint32_t i = 0; i < kLayerTextures; ++i) {
@@ -83,7 +83,9 @@ std::vector<RasterTextures::Slot> RasterTextures::slots(const Material& material
                              texture == LayerTexture::diffuse_transmission_color;
         all.push_back({kFirstLayerBinding + i,
                        variant.reads(texture) ? &layer_texture(*material.layers, texture) : nullptr,
-                       colored ? Coding::srgb : Coding::linear});
+                       texture == LayerTexture::clearcoat_normal ? Coding::normal
+                       : colored                                 ? Coding::srgb
+                                                                 : Coding::linear});
     }
     return all;
 }

@@ -30,15 +30,28 @@ Uv with_derivatives(vec2 uv, float q)
     return Uv(uv, (dFdx(linear) - uv * dFdx(q)) / q, (dFdy(linear) - uv * dFdy(q)) / q);
 }
 
-/// Filtered as its sampler says, at level (TX-2), or by several probes along the footprint (TX-6).
-vec4 read(sampler2D map, TextureSlot slot, Point point)
+Uv uv_of(TextureSlot slot, Point point)
 {
     Uv uv = point.uv[0];
     if (kUv1 && slot.uv_set == 1u) uv = point.uv[1];
-    if (kTextureTransform) {
-        const mat2 m = mat2(slot.u_row.x, slot.v_row.x, slot.u_row.y, slot.v_row.y);
-        uv = Uv(m * uv.at + vec2(slot.u_row.z, slot.v_row.z), m * uv.dx, m * uv.dy);
-    }
+    if (!kTextureTransform) return uv;
+    const mat2 m = mat2(slot.u_row.x, slot.v_row.x, slot.u_row.y, slot.v_row.y);
+    return Uv(m * uv.at + vec2(slot.u_row.z, slot.v_row.z), m * uv.dx, m * uv.dy);
+}
+
+/// (TX-2), not clamped.
+float level_of(sampler2D map, TextureSlot slot, Point point)
+{
+    const Uv uv = uv_of(slot, point);
+    const vec2 dx = uv.dx * vec2(textureSize(map, 0));
+    const vec2 dy = uv.dy * vec2(textureSize(map, 0));
+    return 0.5 * log2(max(max(dot(dx, dx), dot(dy, dy)), 1e-30));
+}
+
+/// Filtered as its sampler says, at level (TX-2), or by several probes along the footprint (TX-6).
+vec4 read(sampler2D map, TextureSlot slot, Point point)
+{
+    const Uv uv = uv_of(slot, point);
     const vec2 size = vec2(textureSize(map, 0));
     const vec2 dx = uv.dx * size;
     const vec2 dy = uv.dy * size;

@@ -29,7 +29,8 @@ vec3 shading_normal(MaterialRecord material, Point point, out float spread)
     const vec3 texel = read(normal_map, material.normal_texture, point).xyz;
     const float size = length(2.0 * texel - 1.0);
     const float scale = material.normal_scale;
-    if (size > 0.0) spread = 2.0 * scale * scale * max(1.0 / size - 1.007, 0.0);
+    const float minified = clamp(level_of(normal_map, material.normal_texture, point), 0.0, 1.0);
+    if (size > 0.0) spread = 2.0 * minified * scale * scale * max(1.0 / size - 1.0001, 0.0);
     return mapped_normal(texel, scale, point);
 }
 
