@@ -46,7 +46,7 @@ void check_samples(const gpu::Device& device, std::uint32_t samples)
     for (const std::uint32_t count : {1u, 2u, 4u, 8u, 16u})
         if (can(count)) counts += fmt::format("{}{}", counts.empty() ? "" : ", ", count);
     throw Error(Blame::machine, fmt::format("{} cannot draw {} samples a pixel in float32", device.name(), samples),
-                fmt::format("--msaa may be {}; --ssaa takes any number", counts));
+                fmt::format("--msaa may be {}; --ssaa draws any number of pixels for one", counts));
 }
 
 dvec3 center_of(const PosedScene& posed, const Draw& draw)
