@@ -102,6 +102,10 @@ void add_combinations(std::vector<TradePoint>& points, std::mt19937_64& random, 
     }
 }
 
+/// Samples of a reference for each of the standard's with which four times the standard is still resolved (its noise a
+/// tenth of what is measured).
+constexpr std::uint64_t kResolvesStandard = 40;
+
 class Measuring {
  public:
     Measuring(Tradeoff& out, const TradeoffSettings& settings, const RenderCall& render, const Progress& progress)
@@ -118,6 +122,7 @@ class Measuring {
         how.aovs = false;
         how.seed = settings_.seed + 1'000'000'007;
         how.spp = kFirstReferenceSamples;
+        if (take_cached(how, kResolvesStandard * settings_.standard.spp)) return;
         const auto silent = quiet("the reference", 0);
         static_cast<void>(render_(how, silent));  // compiles the pipelines: the next one tells the cost of samples
         if (progress_.stopped()) return;
@@ -127,7 +132,8 @@ class Measuring {
         const double affordable = settings_.reference_share * settings_.budget_seconds / a_sample;
         how.spp = static_cast<std::uint64_t>(
             std::clamp(affordable, double(kFirstReferenceSamples), double(kMostReferenceSamples)));
-        if (take_cached(how)) return;
+        // What this run could do but little better by is not made anew.
+        if (take_cached(how, how.spp / 2)) return;
         const Clock clock;
         if (progress_.stopped()) return;
         out_.reference = render_(how, quiet("the reference", 0));
@@ -154,12 +160,12 @@ class Measuring {
     }
 
  private:
-    /// True when an earlier run has left a reference that is no worse than what this one could afford.
-    bool take_cached(RenderSettings& how)
+    /// True when an earlier run has left a reference of at least `enough` samples.
+    bool take_cached(RenderSettings& how, std::uint64_t enough)
     {
         if (settings_.cache == nullptr) return false;
         std::optional<Film> kept = settings_.cache->find(settings_.cache_key);
-        if (!kept || kept->samples < how.spp || kept->variance.empty()) return false;
+        if (!kept || kept->samples < enough || kept->variance.empty()) return false;
         out_.reference = std::move(*kept);
         out_.reference_cached = true;
         how.spp = out_.reference.samples;

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "engine/measure/frontier.h"
+#include "tests/support/files.h"
 
 namespace etalon {
 namespace {
@@ -177,6 +178,24 @@ TEST(Tradeoff, a_renderer_of_known_cost_and_error_is_measured_as_it_is)
     EXPECT_THAT(tradeoff_csv(out), testing::StartsWith("settings,turned,frontier"));
     EXPECT_THAT(tradeoff_html(out), testing::HasSubstr("<svg"));
     EXPECT_THAT(tradeoff_json(out), testing::HasSubstr("\"etalon-tradeoff/1\""));
+}
+
+TEST(Tradeoff, a_reference_that_resolves_the_standard_is_taken_from_the_cache)
+{
+    const test::TemporaryDirectory folder;
+    const ReferenceCache cache(folder.path());
+    TradeoffSettings settings{
+        .budget_seconds = 0.5, .rounds = 1, .combinations = 0, .cache = &cache, .cache_key = "pretend"};
+    settings.standard.spp = 2;
+    const auto render = [](const RenderSettings& how, const Progress&) { return pretend(how); };
+    const Tradeoff first = measure_tradeoff({}, settings, render, {});
+    EXPECT_FALSE(first.reference_cached);
+    const Tradeoff second = measure_tradeoff({}, settings, render, {});
+    EXPECT_TRUE(second.reference_cached);
+    EXPECT_EQ(second.reference.mean, first.reference.mean);
+    EXPECT_EQ(second.reference.samples, first.reference.samples);
+    settings.cache_key = "another scene";
+    EXPECT_FALSE(measure_tradeoff({}, settings, render, {}).reference_cached);
 }
 
 TEST(Tradeoff, stop_keeps_what_is_measured)
