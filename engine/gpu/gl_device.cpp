@@ -67,12 +67,12 @@ bool samples_where_vulkan_does(const gl::Functions& gl, GLsizei samples)
     gl.NamedFramebufferTexture(name, GL_COLOR_ATTACHMENT0, texture.get(), 0);
     gl.BindFramebuffer(GL_FRAMEBUFFER, name);
     bool same = true;
-    for (GLsizei i = 0; i < samples; ++i) {
+    const auto count = static_cast<std::size_t>(samples);
+    for (std::size_t i = 0; i < count; ++i) {
         GLfloat at[2] = {};
         gl.GetMultisamplefv(GL_SAMPLE_POSITION, static_cast<GLuint>(i), at);
         for (std::size_t axis = 0; axis < 2; ++axis)
-            same &=
-                at[axis] * 16 == static_cast<float>(kStandardSamples[static_cast<std::size_t>(samples - 2 + i)][axis]);
+            same &= at[axis] * 16 == static_cast<float>(kStandardSamples[count - 2 + i][axis]);
     }
     gl.BindFramebuffer(GL_FRAMEBUFFER, 0);
     return same;
