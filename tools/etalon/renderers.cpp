@@ -96,6 +96,7 @@ gpu::Device& Renderers::device(Renderer renderer)
         throw Error(Blame::input, "the path tracer draws by Vulkan alone, not by OpenGL",
                     "leave out --backend opengl, or use --renderer reference");
     if (device_ && !(renderer == Renderer::path && device_->backend() == gpu::Backend::opengl)) return *device_;
+    prepared_.reset();  // it lives on the device that goes
     try {
         device_.emplace(options_);
     } catch (Error& vulkan) {
