@@ -213,7 +213,7 @@ class Planner {
         shared::PostGrid push{.size = size_,
                               .cells = cells,
                               .spacing = float(spacing),
-                              .inverse_r = inverse(sigma_r),
+                              .inverse_r = inverse(sigma_r / std::sqrt(3.0)),
                               .kernel = add_table(gaussian_kernel(blur, shared::kPostGridRadius))};
         const auto over_cells = [&](PostStep& next, unsigned levels) {
             next.invocations[0] = unsigned(cells.x);

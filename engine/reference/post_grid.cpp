@@ -64,8 +64,10 @@ void blur(Grid& grid, int axis)
 void bilateral_grid(PostPicture& picture, double sigma_s, double sigma_r)
 {
     const double spacing = std::max(sigma_s, 1.0);
+    const double level =
+        std::max(sigma_r / std::sqrt(3.0), 1e-18);  // greys that differ by it differ by sigma_r in colour
     const auto place = [&](int x, int y, const dvec4& pixel) {
-        return dvec3(x / spacing, y / spacing, std::clamp(luminance(pixel) / sigma_r, 0.0, kLevels - 1.0));
+        return dvec3(x / spacing, y / spacing, std::clamp(luminance(pixel) / level, 0.0, kLevels - 1.0));
     };
     Grid grid(ivec3(int((picture.width - 1) / spacing) + 2, int((picture.height - 1) / spacing) + 2, kLevels));
     for (int y = 0; y < picture.height; ++y)

@@ -48,15 +48,18 @@ int post(const Arguments& arguments)
                     film.height, error));
     const std::vector<std::string> findings = suspicions(film);
     for (const std::string& finding : findings) warn(Terminal::of_standard_error(), finding);
-    if (arguments.has("json"))
-        put(Json::object({{"schema", "etalon-post/1"},
-                          {"outputs", outputs},
-                          {"post", film.metadata.at("post")},
-                          {"device", renderers.device_of(renderer)},
-                          {"error_text", error},
-                          {"findings", findings}})
-                .text() +
-            "\n");
+    if (!arguments.has("json")) return 0;
+    std::vector<std::pair<std::string, Json>> seconds;
+    for (const StageTime& stage : stages) seconds.emplace_back(stage.stage, stage.seconds);
+    put(Json::object({{"schema", "etalon-post/1"},
+                      {"outputs", outputs},
+                      {"post", film.metadata.at("post")},
+                      {"device", renderers.device_of(renderer)},
+                      {"seconds", Json::object(seconds)},
+                      {"error_text", error},
+                      {"findings", findings}})
+            .text() +
+        "\n");
     return 0;
 }
 
