@@ -31,7 +31,7 @@ Texels texels_of(const Image& image, std::uint32_t mip, std::uint32_t layer)
 /// A place in a bound buffer, as OpenGL wants it.
 void* at(std::uint64_t offset)
 {
-    return reinterpret_cast<void*>(static_cast<std::uintptr_t>(offset));
+    return reinterpret_cast<void*>(static_cast<std::uintptr_t>(offset));  // NOLINT(performance-no-int-to-ptr)
 }
 
 }  // namespace
