@@ -1,8 +1,9 @@
 #include "engine/image/film.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 
 #include "engine/base/error.h"
 #include "engine/math/stats.h"
@@ -165,7 +166,10 @@ FilmCheck check(const Film& film)
             ++found.inf_pixels;
         const bool same_alpha = film.alpha.empty() || film.alpha[i] == film.alpha[0];
         // By bits: a picture of NaN alone is of one colour too.
-        if (!same_alpha || std::memcmp(&m, &film.mean[0], sizeof m) != 0) found.single_colour = false;
+        const auto same_bits = [&](int c) {
+            return std::bit_cast<std::uint32_t>(m[c]) == std::bit_cast<std::uint32_t>(film.mean[0][c]);
+        };
+        if (!same_alpha || !same_bits(0) || !same_bits(1) || !same_bits(2)) found.single_colour = false;
     }
     return found;
 }

@@ -213,8 +213,9 @@ Scene instances()
     field.name = "field";
     field.mesh = build.mesh("box", std::move(primitives));
     for (int i = 0; i < 1000; ++i) {
+        const int row = i / 40;
         const double x = i % 40 - 19.5;
-        const double z = i / 40 - 12.0;
+        const double z = row - 12.0;
         const double height = 0.4 + 0.6 * std::abs(std::sin(0.37 * x) * std::cos(0.53 * z));
         dmat4 stretched(1);
         stretched[1][1] = height;
