@@ -75,7 +75,8 @@ TEST_F(RasterDepth, G7_surfaces_near_one_another_keep_their_order_as_far_as_the_
         const Requirements required = require(posed, settings);
         const auto device = wrong(render_raster(this->device(), posed, required, settings, {}));
         const auto reference = wrong(reference::render_raster(posed, required, settings, {}));
-        int blind = 0, mixed = 0;  // decades beyond the theory's reach, and those of them where the nearer wall does not show
+        int blind = 0,
+            mixed = 0;  // decades beyond the theory's reach, and those of them where the nearer wall does not show
         std::cout << kind.name << ": share of pixels in which the nearer wall does not show, by decade:";
         for (int i = 0; i < kDecades; ++i) {
             const double distance = 2 * kNear * std::pow(10.0, i * 8.69 / (kDecades - 1));
