@@ -44,8 +44,8 @@ struct Knob {
     std::variant<CountRange, CountChoice, NameChoice, Switch> type;
     std::variant<std::uint64_t RenderSettings::*, int RenderSettings::*, unsigned RenderSettings::*,
                  bool RenderSettings::*, PixelFilter RenderSettings::*, TextureFilter RenderSettings::*,
-                 DepthKind RenderSettings::*, Shadows RenderSettings::*, Transparency RenderSettings::*,
-                 LightSelection RenderSettings::*, Sequence RenderSettings::*>
+                 DepthKind RenderSettings::*, Shadows RenderSettings::*, LightSelection RenderSettings::*,
+                 Sequence RenderSettings::*>
         field;
     std::string_view unit;  ///< "samples/pixel"; empty for a switch
     KnobScope scope = KnobScope::path;

@@ -28,9 +28,6 @@ enum class DepthKind { reversed_32, forward_32, forward_24, forward_16 };
 /// Of punctual lights, in rasterizers.
 enum class Shadows { none, map };
 
-/// How rasterizers put together what is not opaque.
-enum class Transparency { sorted, weighted, exact };
-
 /// How next-event estimation chooses among emitters: by what each could send to the point, or by power alone.
 enum class LightSelection { tree, power };
 
@@ -75,7 +72,6 @@ struct RenderSettings {
     int point_size = 1;  ///< rasterizers: of points, pixels
     int line_width = 1;  ///< rasterizers: of lines, pixels
     Shadows shadows = Shadows::none;
-    Transparency transparency = Transparency::sorted;
     bool aovs = false;     ///< also fill Film::aovs
     unsigned threads = 0;  ///< CPU threads; 0: one per core. Never changes a bit of the picture.
 };
