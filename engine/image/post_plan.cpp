@@ -156,6 +156,7 @@ class Planner {
             sum += (i == 0 ? 1 : 2) * weights.back();
         }
         std::vector<float> kernel;
+        kernel.reserve(weights.size());
         for (const double weight : weights) kernel.push_back(float(weight / sum));
         return kernel;
     }
