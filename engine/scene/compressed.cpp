@@ -97,9 +97,9 @@ class Decoder {
                         "compress the mesh again as triangles");
         std::vector<DracoWish> wishes;
         std::vector<std::size_t> accessors;
+        // The parser drops objects without members: preflight has seen one.
         const Value* attributes = member(extension, "attributes");
-        assume(attributes != nullptr);
-        for (const std::string& name : attributes->Keys()) {
+        for (const std::string& name : attributes == nullptr ? std::vector<std::string>() : attributes->Keys()) {
             const int accessor = primitive.attributes.at(name);
             const auto& in = model_.accessors.at(static_cast<std::size_t>(accessor));
             accessors.push_back(static_cast<std::size_t>(accessor));
