@@ -26,7 +26,7 @@ struct Range {
 
 /// Where code is: ours, and that of the libraries which throw to us or are below all. Looked up once.
 struct Modules {
-    std::array<Range, 5> ours;
+    std::array<Range, 8> ours;
     std::size_t count = 0;
 
     static int add(dl_phdr_info* info, std::size_t, void* data)
@@ -39,7 +39,7 @@ struct Modules {
             range.begin = std::min<std::uintptr_t>(range.begin, info->dlpi_addr + segment.p_vaddr);
             range.end = std::max<std::uintptr_t>(range.end, info->dlpi_addr + segment.p_vaddr + segment.p_memsz);
         }
-        constexpr const char* kThrowing[] = {"libstdc++", "libfmt", "libspirv-cross", "/libc."};
+        constexpr const char* kThrowing[] = {"libstdc++", "libfmt", "libspirv-cross", "/libc.", "libasan"};
         const bool program = info->dlpi_name[0] == '\0' && modules.count == 0;
         const bool throwing = std::any_of(std::begin(kThrowing), std::end(kThrowing), [&](const char* name) {
             return std::strstr(info->dlpi_name, name) != nullptr;
@@ -133,6 +133,15 @@ void* operator new(std::size_t size, std::align_val_t alignment)
 void* operator new[](std::size_t size, std::align_val_t alignment)
 {
     return etalon::test::allocate(size, static_cast<std::size_t>(alignment), __builtin_return_address(0));
+}
+// What asks for no exception is never failed, but must come from where `operator delete` below brings it back.
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept
+{
+    return std::malloc(std::max<std::size_t>(size, 1));
+}
+void* operator new[](std::size_t size, const std::nothrow_t&) noexcept
+{
+    return std::malloc(std::max<std::size_t>(size, 1));
 }
 void operator delete(void* memory) noexcept
 {
