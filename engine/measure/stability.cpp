@@ -183,7 +183,10 @@ class Trials {
                                               ? calls_.judge_raster(unchanged_, settings, film)
                                               : compare(film, unchanged_film(trial.renderer), comparing_);
             probe.holds = passed(comparison.verdict) && film.nonfinite == 0;
-            if (!comparison.reasons.empty()) probe.why = comparison.reasons.front();
+            // Which of the reasons broke it is not said apart: all of them then.
+            if (!comparison.reasons.empty())
+                probe.why =
+                    probe.holds ? comparison.reasons.front() : fmt::format("{}", fmt::join(comparison.reasons, "; "));
             if (film.nonfinite > 0) probe.why = fmt::format("{} samples are NaN or Inf", film.nonfinite);
         } catch (const Error& error) {
             probe.why = error.message();
