@@ -49,6 +49,7 @@ std::vector<Subject> builtin_subjects()
             {"wires"},
             {"orthographic"},
             {"thin-lens"},
+            {"siemens-star", {.spp = 256, .max_depth = 2}, 0.015},
             {"specular"},
             {"clearcoat"},
             {"sheen"},

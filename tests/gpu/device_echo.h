@@ -234,6 +234,7 @@ ETALON_FUNCTION void fill_echo(ETALON_INOUT(PathFrame) r, uint n)
     r.sky_height = next_uint(n);
     r.cells_x = next_uint(n);
     r.cells_y = next_uint(n);
+    r.lens_blades = next_uint(n);
 }
 
 ETALON_FUNCTION void fill_echo(ETALON_INOUT(PathPush) r, uint n)
