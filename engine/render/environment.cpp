@@ -88,7 +88,8 @@ void prefilter_row(const std::vector<Planes>& source, int table, int row, std::s
                 std::sin(polar) * std::sin(source_polar) * std::cos(azimuth) + std::cos(polar) * std::cos(source_polar);
             const double weight = weight_of(table, n_l) * solid_angle;
             total += weight;
-            weights[static_cast<std::size_t>(x)] = weights[static_cast<std::size_t>(x + kSourceWidth)] = weight;
+            const auto column = static_cast<std::size_t>(x);
+            weights[column] = weights[column + std::size_t{kSourceWidth}] = weight;
         }
         const Planes& planes = source[static_cast<std::size_t>(y)];
         for (int i = 0; i < columns; ++i) {

@@ -107,6 +107,7 @@ int compare(const Arguments& arguments)
     report.notes.insert(report.notes.end(), posed.notes.begin(), posed.notes.end());
 
     std::vector<Contender> contenders;
+    contenders.reserve(chosen.size());
     for (const Renderer renderer : chosen)
         contenders.push_back(contender(scene_name, posed, of_contender(settings, renderer), renderers));
     const auto judge = [&](const Film& device, const Film& reference) {
