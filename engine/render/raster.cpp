@@ -26,7 +26,7 @@ class Stopwatch {
 };
 
 template <class Make>
-auto timed(std::vector<StageTime>& times, const char* name, Make make)
+auto timed(std::vector<RasterStage>& times, const char* name, Make make)
 {
     const Stopwatch watch;
     auto made = make();

@@ -21,7 +21,7 @@
 namespace etalon {
 
 /// What a stage of the rasterizer took. Work of the device by its own clock, the rest by the host's.
-struct StageTime {
+struct RasterStage {
     std::string name;
     double milliseconds = 0;
 };
@@ -44,7 +44,7 @@ class RasterScene {
     /// Waits for the picture and reads it, with its AOVs where settings ask for them.
     Film read();
     /// Of construction, the last draw and the last read.
-    std::vector<StageTime> times() const;
+    std::vector<RasterStage> times() const;
 
  private:
     /// A mesh primitive in one place, or a sphere.
@@ -104,7 +104,7 @@ class RasterScene {
     Requirements required_;
     RenderSettings settings_;
     RasterVariants variants_;
-    std::vector<StageTime> times_;
+    std::vector<RasterStage> times_;
     double read_milliseconds_ = 0;
     RasterGeometry geometry_;
     RasterTextures textures_;

@@ -314,14 +314,14 @@ Film RasterScene::read()
     film.metadata["msaa"] = std::to_string(variants_.samples());
     film.metadata["ssaa"] = std::to_string(settings_.ssaa);
     film.metadata["filter"] = knob_value(settings_, "filter");
-    for (const StageTime& time : times())
+    for (const RasterStage& time : times())
         film.metadata["milliseconds." + time.name] = fmt::format("{:.3f}", time.milliseconds);
     return film;
 }
 
-std::vector<StageTime> RasterScene::times() const
+std::vector<RasterStage> RasterScene::times() const
 {
-    std::vector<StageTime> all = times_;
+    std::vector<RasterStage> all = times_;
     if (commands_)
         for (const gpu::RegionTime& region : commands_->times()) all.push_back({region.name, region.milliseconds});
     all.push_back({"read", read_milliseconds_});
