@@ -38,7 +38,7 @@ PathTracer::State::State(gpu::Device& d, const PosedScene& posed, const Requirem
 {
     scene.frame.max_depth = std::min(scene.frame.max_depth, kMostDepth);
     queues = make_path_queues(d, kWaveCapacity, scene.frame.max_depth,
-                               scene.features.volume || scene.features.glass_shadows);
+                              scene.features.volume || scene.features.glass_shadows);
 }
 
 void PathTracer::State::resize(const View& view)

@@ -20,7 +20,8 @@ ETALON_CONSTANT float kSheenAlbedoCosine = 1e-4f;
 ETALON_CONSTANT uint kSheenAlbedoFirst = kGgxAlbedoX * kGgxAlbedoY;
 ETALON_CONSTANT uint kAlbedoCells = kSheenAlbedoFirst + kSheenAlbedoX * kSheenAlbedoY;
 
-// The mean of Schlick's weight (SH-34), for rasterizers alone: x = cosine, y = roughness = √alpha. Its cells follow the others.
+// The mean of Schlick's weight (SH-34), for rasterizers alone: x = cosine, y = roughness = √alpha. Its cells follow the
+// others.
 ETALON_CONSTANT uint kSchlickShareX = 63u;
 ETALON_CONSTANT uint kSchlickShareY = 31u;
 ETALON_CONSTANT uint kSchlickShareFirst = kAlbedoCells;

@@ -1,5 +1,5 @@
-// What each post pass is told (push constants), one definition for C++ and GLSL (scalar layout). Numbers in brackets are
-// of docs/equations.md. An inverse of a width that is infinite is 0.
+// What each post pass is told (push constants), one definition for C++ and GLSL (scalar layout). Numbers in brackets
+// are of docs/equations.md. An inverse of a width that is infinite is 0.
 #ifndef ETALON_SHADERS_SHARED_POST_H
 #define ETALON_SHADERS_SHARED_POST_H
 #include "shaders/shared/types.h"
@@ -24,10 +24,10 @@ struct PostMeter {
     PostSize size;
     uint factor;  // index in the table where meter.comp leaves it
 };
-ETALON_CONSTANT uint kPostBins = 4096u;       // of luminance: 16 an octave
-ETALON_CONSTANT uint kPostBinShift = 19u;     // from the bits of a float to its bin
+ETALON_CONSTANT uint kPostBins = 4096u;         // of luminance: 16 an octave
+ETALON_CONSTANT uint kPostBinShift = 19u;       // from the bits of a float to its bin
 ETALON_CONSTANT float kPostMiddleGrey = 0.18f;  // what the mean of the middle is brought to
-ETALON_CONSTANT float kPostTail = 0.1f;       // share of pixels left out at each end
+ETALON_CONSTANT float kPostTail = 0.1f;         // share of pixels left out at each end
 
 /// gaussian.comp (IP-5): one axis.
 struct PostGaussian {
@@ -66,8 +66,8 @@ ETALON_CONSTANT int kPostGridRadius = 4;   // of the blur, cells
 /// atrous.comp (IP-10): one level.
 struct PostAtrous {
     PostSize size;
-    int step;          // pixels between taps
-    uint guided;       // 1: the width in luminance comes from the variance
+    int step;     // pixels between taps
+    uint guided;  // 1: the width in luminance comes from the variance
     float inverse_c;
     float inverse_n;
     float inverse_z;

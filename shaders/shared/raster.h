@@ -7,7 +7,7 @@ ETALON_SHARED_BEGIN
 
 struct RasterFrame {
     mat4 clip_from_world;
-    mat3 world_from_camera;  // rotation alone
+    mat3 world_from_camera;     // rotation alone
     vec3 environment_radiance;  // of a constant environment, scaled
     vec2 environment_turn;      // cos, sin of the environment's rotation about +Y
     float environment_scale;
@@ -17,7 +17,7 @@ struct RasterFrame {
     uvec2 mirror_size;  // of table 0 in the environment's atlas, texels
     uint light_count;
     uint emitter_count;
-    vec4 background;  // behind everything, where the environment is not drawn there
+    vec4 background;   // behind everything, where the environment is not drawn there
     float point_size;  // drawn pixels
     float line_width;
 };
@@ -36,7 +36,8 @@ struct EmitterRecord {
     uint flags;
 };
 
-/// What one shadow map sees (SH-43). Light i has six in a row: a point light one each way of the axes, the others their first.
+/// What one shadow map sees (SH-43). Light i has six in a row: a point light one each way of the axes, the others their
+/// first.
 struct RasterShadow {
     mat3 light_from_world;  // rotation
     vec3 eye;               // camera-relative world
@@ -79,11 +80,11 @@ struct RasterShrink {
 
 /// One axis of reconstruction (AA-2): push constants of filter.comp.
 struct RasterReconstruction {
-    uvec2 size;      // of what is written, pixels
-    int first;       // of the drawn pixels that a pixel weighs, relative to its own first
-    uint taps;       // how many they are
-    uint per_side;   // drawn pixels along a side of a pixel
-    uint vertical;   // 0: along rows
+    uvec2 size;     // of what is written, pixels
+    int first;      // of the drawn pixels that a pixel weighs, relative to its own first
+    uint taps;      // how many they are
+    uint per_side;  // drawn pixels along a side of a pixel
+    uint vertical;  // 0: along rows
 };
 
 ETALON_SHARED_END

@@ -1,7 +1,7 @@
-// Random numbers that fill the square evenly, sample after sample (MC-8): Owen-scrambled points of Sobol's (0,2)-sequence,
-// shuffled and padded (Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020). Integers, the same in C++ and GLSL,
-// without state like those of rng.h, and in their place: a pair of numbers of one decision is even over the samples of its
-// pixel, and independent of every other pair.
+// Random numbers that fill the square evenly, sample after sample (MC-8): Owen-scrambled points of Sobol's
+// (0,2)-sequence, shuffled and padded (Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020). Integers, the
+// same in C++ and GLSL, without state like those of rng.h, and in their place: a pair of numbers of one decision is
+// even over the samples of its pixel, and independent of every other pair.
 #ifndef ETALON_SHADERS_SHARED_SOBOL_H
 #define ETALON_SHADERS_SHARED_SOBOL_H
 #include "shaders/shared/rng.h"
@@ -16,8 +16,8 @@ ETALON_FUNCTION uint reversed_bits(uint x)
     return (x & 0x55555555u) << 1u | (x >> 1u & 0x55555555u);
 }
 
-/// Owen's scrambling of a number whose bits are reversed: whether a bit is flipped is decided by the bits below it alone,
-/// and by the seed (Laine & Karras 2011, with the constants of Vegdahl 2021).
+/// Owen's scrambling of a number whose bits are reversed: whether a bit is flipped is decided by the bits below it
+/// alone, and by the seed (Laine & Karras 2011, with the constants of Vegdahl 2021).
 ETALON_FUNCTION uint scrambled_upward(uint x, uint seed)
 {
     x ^= x * 0x3d20adeau;
@@ -29,7 +29,8 @@ ETALON_FUNCTION uint scrambled_upward(uint x, uint seed)
 }
 
 /// Point `index` of the sequence, bits reversed: the first number is the index itself (van der Corput), the second its
-/// product with Pascal's triangle modulo 2. C(j, k) is odd iff k's bits are among j's (Lucas), which makes it five steps.
+/// product with Pascal's triangle modulo 2. C(j, k) is odd iff k's bits are among j's (Lucas), which makes it five
+/// steps.
 ETALON_FUNCTION uint pascal_bits(uint x)
 {
     x ^= x >> 1u & 0x55555555u;

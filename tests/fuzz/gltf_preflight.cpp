@@ -23,7 +23,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
     using namespace etalon;
     static const std::filesystem::path nowhere = "/dev/null";  // no folder, so that no file is ever read
-    static const Limits limits;  // made once: it asks the system how much memory there is
+    static const Limits limits;                                // made once: it asks the system how much memory there is
     try {
         const CheckedGltf checked = preflight(std::as_bytes(std::span(data, size)), nowhere, limits);
         for (const GltfBuffer& buffer : checked.buffers) touch(buffer.bytes);
