@@ -3,6 +3,8 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <exception>
 #include <fstream>
@@ -28,7 +30,8 @@ std::uint64_t smallest_limit(const std::string& mount, std::string group, const 
     for (;;) {
         std::uint64_t limit = 0;
         // Absent where the group is seen from inside its own namespace; "max" where there is none.
-        if (std::ifstream(mount + group + '/' + name) >> limit && limit > 0) smallest = std::min(smallest, limit);
+        const std::string file = fmt::format("{}{}/{}", mount, group, name);
+        if (std::ifstream(file) >> limit && limit > 0) smallest = std::min(smallest, limit);
         if (group.empty()) return smallest;
         const std::size_t end = group.rfind('/');
         group.resize(end == std::string::npos ? 0 : end);
