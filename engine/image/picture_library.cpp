@@ -2,14 +2,30 @@
 
 #include <dlfcn.h>
 #include <fmt/format.h>
+#include <sys/mman.h>
 
 #include "engine/base/error.h"
 
 namespace etalon::codec {
 namespace {
 
+/// The module's libraries map 376 MB and one of them starts threads as it is loaded, and ends the process where it cannot.
+constexpr std::size_t kAddressSpace = std::size_t{448} << 20;
+
+void require_address_space()
+{
+    void* const probe = mmap(nullptr, kAddressSpace, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (probe == MAP_FAILED)
+        throw Error(Blame::machine,
+                    fmt::format("pictures cannot be read or written: their libraries need {} MB of address space",
+                                kAddressSpace / 1'000'000),
+                    "raise the limit (ulimit -v)");
+    munmap(probe, kAddressSpace);
+}
+
 PictureLibrary load()
 {
+    require_address_space();
     // Found by the program's own run path. Never closed: its libraries do not survive that.
     void* module = dlopen("libetalon_pictures.so", RTLD_LAZY | RTLD_LOCAL);
     void* const entry = module ? dlsym(module, "etalon_picture_library") : nullptr;
