@@ -9,7 +9,8 @@
 namespace etalon::codec {
 namespace {
 
-/// The module's libraries map 376 MB and one of them starts threads as it is loaded, and ends the process where it cannot.
+/// The module maps 376 MB, and one of its libraries starts threads as it is loaded: where it cannot, it ends the
+/// process.
 constexpr std::size_t kAddressSpace = std::size_t{448} << 20;
 
 void require_address_space()
