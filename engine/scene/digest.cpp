@@ -115,6 +115,13 @@ class SceneDigest {
 
 }  // namespace
 
+Digest digest(const Material& material)
+{
+    SceneDigest out;
+    out.material(material);
+    return out.result();
+}
+
 Digest digest(const PosedScene& posed)
 {
     SceneDigest out;

@@ -11,6 +11,7 @@
 #include "engine/base/nearest.h"
 #include "engine/scene/extensions.h"
 #include "engine/scene/gltf_import.h"
+#include "engine/scene/simplify.h"
 
 namespace etalon {
 
@@ -60,6 +61,7 @@ Scene parse_gltf(std::span<const std::byte> bytes, const std::filesystem::path& 
     for (std::string& warning : warnings_for_extensions(model.extensionsUsed))
         scene.warnings.push_back(std::move(warning));
     gltf::import_materials(source, scene);
+    share_equal_images(scene);
     gltf::import_meshes(source, scene);
     gltf::import_nodes(source, scene);
     gltf::import_skins(source, scene);

@@ -11,6 +11,7 @@
 #include "engine/scene/builder.h"
 #include "engine/scene/environment.h"
 #include "engine/scene/morph.h"
+#include "engine/scene/simplify.h"
 #include "engine/scene/skin.h"
 #include "engine/scene/view.h"
 
@@ -325,6 +326,13 @@ Subject around(const std::pair<dvec3, dvec3>& box)
 }  // namespace
 
 PosedScene pose(const Scene& scene, const PoseSettings& settings)
+{
+    PosedScene posed = pose_whole(scene, settings);
+    simplify(posed);
+    return posed;
+}
+
+PosedScene pose_whole(const Scene& scene, const PoseSettings& settings)
 {
     assume(!scene.roots.empty());
     const Index chosen = settings.root.value_or(scene.default_root);

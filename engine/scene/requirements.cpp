@@ -2,7 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <map>
+#include <optional>
+
 #include "engine/base/error.h"
+#include "engine/scene/simplify.h"
 
 namespace etalon {
 
@@ -66,6 +71,19 @@ bool reads_base_color(const Material& material)
            material.model == BsdfModel::lambert || material.model == BsdfModel::mirror;
 }
 
+// What vertex colours may leave out; both are true where there are none.
+struct VertexColors {
+    bool white = true;  // and solid
+    bool solid = true;  // alpha 1
+};
+
+VertexColors describe_colors(const Primitive& primitive)
+{
+    const auto& colors = primitive.colors;
+    return {.white = std::all_of(colors.begin(), colors.end(), [](const vec4& c) { return c == vec4(1); }),
+            .solid = std::all_of(colors.begin(), colors.end(), [](const vec4& c) { return c.w == 1; })};
+}
+
 bool needs_tangents(const Material& material)
 {
     const std::optional<MaterialLayers>& layers = material.layers;
@@ -81,18 +99,21 @@ std::string label(std::string_view kind, std::size_t index, const std::string& n
 
 class Survey {
  public:
-    Survey(const PosedScene& posed, const RenderSettings& settings)
+    Survey(const PosedScene& posed, const RenderSettings& settings, std::optional<Feature> without)
         : posed_(posed),
           scene_(*posed.scene),
           settings_(settings),
+          without_(without),
           rasterizes_(settings.renderer == Renderer::raster || settings.renderer == Renderer::reference_raster),
           environment_shines_(!posed.environment.is_black())
     {
         out_.texture_used.resize(scene_.textures.size());
         out_.material_used.resize(posed_.materials().size());
+        colors_are_solid_.assign(posed_.materials().size(), true);
+        for (const Draw& draw : posed_.draws) colors(posed_.primitive(draw));
         for (const Draw& draw : posed_.draws) geometry(draw);
         for (const PosedSphere& sphere : posed_.spheres) {
-            out_.set(Feature::spheres, label("node", sphere.node, scene_.nodes[sphere.node].name));
+            set(Feature::spheres, label("node", sphere.node, scene_.nodes[sphere.node].name));
             material(sphere.material);
         }
         light();
@@ -102,6 +123,32 @@ class Survey {
     Requirements result() && { return std::move(out_); }
 
  private:
+    void set(Feature feature, std::string because)
+    {
+        if (feature != without_) out_.set(feature, std::move(because));
+    }
+
+    // Once for each primitive, however often it is drawn.
+    void colors(const Primitive& primitive)
+    {
+        const auto [known, is_new] = colors_.try_emplace(&primitive);
+        if (!is_new) return;
+        known->second = describe_colors(primitive);
+        if (!known->second.solid) colors_are_solid_[primitive.material] = false;
+    }
+
+    // Is the surface there at every point, whatever its alpha mode? Path tracers then draw it as an opaque one, to the
+    // bit; rasterizers draw the modes in an order of their own (SH-32).
+    bool is_solid(Index index)
+    {
+        const Material& m = posed_.materials()[index];
+        if (!colors_are_solid_[index] || m.base_color.w != 1) return false;
+        if (m.alpha_mode == AlphaMode::mask && m.alpha_cutoff > 1) return false;
+        if (!m.base_color_texture.present()) return true;
+        const Index image = scene_.textures[m.base_color_texture.texture].image;
+        return image == kNone || constant_channel(scene_.images[image], 3) == 1.0;
+    }
+
     void geometry(const Draw& draw)
     {
         const Primitive& primitive = posed_.primitive(draw);
@@ -111,21 +158,21 @@ class Survey {
             fmt::format("{} primitive {}", label("mesh", draw.mesh, scene_.meshes[draw.mesh].name), draw.primitive);
         switch (primitive.topology) {
             case Topology::points:
-                out_.set(Feature::points, who);
+                set(Feature::points, who);
                 break;
             case Topology::lines:
-                out_.set(Feature::lines, who);
+                set(Feature::lines, who);
                 break;
             case Topology::triangles:
-                out_.set(Feature::triangles, who);
+                set(Feature::triangles, who);
                 break;
         }
         const Material& surface = posed_.materials()[primitive.material];
         const bool lit = surface.model != BsdfModel::unlit;
-        if (primitive.has_normals && (lit || settings_.aovs)) out_.set(Feature::normals, who);
-        if (!primitive.colors.empty() && reads_base_color(surface)) out_.set(Feature::vertex_colors, who);
-        if (!primitive.tangents.empty() && lit && needs_tangents(surface)) out_.set(Feature::tangents, who);
-        if (settings_.aovs && !primitive.uv[0].empty()) out_.set(Feature::uv0, who);
+        if (primitive.has_normals && (lit || settings_.aovs)) set(Feature::normals, who);
+        if (!colors_.at(&primitive).white && reads_base_color(surface)) set(Feature::vertex_colors, who);
+        if (!primitive.tangents.empty() && lit && needs_tangents(surface)) set(Feature::tangents, who);
+        if (settings_.aovs && !primitive.uv[0].empty()) set(Feature::uv0, who);
         material(primitive.material);
     }
 
@@ -136,15 +183,15 @@ class Survey {
         const Material& m = posed_.materials()[index];
         const std::string who = label("material", index, m.name);
         const bool lit = m.model != BsdfModel::unlit;
-        out_.set(feature_of(m.model), who);
+        set(feature_of(m.model), who);
         if (lit) any_lit_ = true;
         if (lit && rasterizes_ && settings_.shading == Shading::blinn_phong)
-            out_.set(Feature::blinn_phong, "settings: blinn-phong shading");
-        if (m.alpha_mode == AlphaMode::mask) out_.set(Feature::alpha_mask, who);
-        if (m.alpha_mode == AlphaMode::blend) out_.set(Feature::alpha_blend, who);
-        if (m.double_sided) out_.set(Feature::double_sided, who);
+            set(Feature::blinn_phong, "settings: blinn-phong shading");
+        if (m.alpha_mode != AlphaMode::opaque && (rasterizes_ || !is_solid(index)))
+            set(m.alpha_mode == AlphaMode::mask ? Feature::alpha_mask : Feature::alpha_blend, who);
+        if (m.double_sided) set(Feature::double_sided, who);
         const bool emits = m.emission != dvec3(0);
-        if (emits) out_.set(Feature::emission, who);
+        if (emits) set(Feature::emission, who);
 
         if (reads_base_color(m)) texture(m.base_color_texture, Feature::base_color_texture, who);
         if (m.model == BsdfModel::metallic_roughness || m.model == BsdfModel::specular_glossiness)
@@ -160,8 +207,8 @@ class Survey {
     void layers(const MaterialLayers& m, const std::string& who)
     {
         const auto need = [&](bool present, Feature feature, std::initializer_list<const TextureUse*> textures) {
-            if (!present) return;
-            out_.set(feature, who);
+            if (!present || feature == without_) return;
+            set(feature, who);
             for (const TextureUse* use : textures) texture(*use, Feature::layer_textures, who);
         };
         const bool textured = m.specular_texture.present() || m.specular_color_texture.present();
@@ -183,13 +230,13 @@ class Survey {
 
     void texture(const TextureUse& use, Feature feature, const std::string& who)
     {
-        if (!use.present()) return;
-        out_.set(feature, who);
-        out_.set(use.uv_set == 0 ? Feature::uv0 : Feature::uv1, who);
-        if (use.transform != dmat3(1)) out_.set(Feature::texture_transform, who);
+        if (!use.present() || feature == without_) return;
+        set(feature, who);
+        set(use.uv_set == 0 ? Feature::uv0 : Feature::uv1, who);
+        if (use.transform != dmat3(1)) set(Feature::texture_transform, who);
         const bool levels = scene_.textures[use.texture].sampler.mipmapped;
         if (rasterizes_ && settings_.mipmaps && (levels || settings_.texture_filter != TextureFilter::file))
-            out_.set(Feature::mipmaps, label("texture", use.texture, scene_.textures[use.texture].name));
+            set(Feature::mipmaps, label("texture", use.texture, scene_.textures[use.texture].name));
         out_.texture_used[use.texture] = true;
     }
 
@@ -198,13 +245,13 @@ class Survey {
         for (std::size_t i = 0; any_lit_ && i < posed_.lights.size(); ++i) {
             const Light& light = posed_.lights[i].light;
             if (light.intensity != 0 && light.color != dvec3(0))
-                out_.set(Feature::punctual_lights, label("light", i, light.name));
+                set(Feature::punctual_lights, label("light", i, light.name));
         }
         if (!environment_shines_) return;
         const bool seen = settings_.background == Background::environment;
-        if (seen) out_.set(Feature::visible_background, "settings: the environment as background");
+        if (seen) set(Feature::visible_background, "settings: the environment as background");
         if (seen || any_lit_)
-            out_.set(posed_.environment.map ? Feature::environment_map : Feature::environment_constant, "environment");
+            set(posed_.environment.map ? Feature::environment_map : Feature::environment_constant, "environment");
     }
 
     void view()
@@ -214,19 +261,21 @@ class Survey {
         if (camera.equirectangular && rasterizes_)
             throw Error(Blame::input, fmt::format("{} sees all around, which no rasterizer can draw", who),
                         "choose a path tracer (--renderer path), or another projection");
-        if (camera.equirectangular) out_.set(Feature::equirectangular, who);
-        if (camera.orthographic) out_.set(Feature::orthographic, who);
-        if (!rasterizes_ && camera.lens && camera.lens->aperture_radius > 0) out_.set(Feature::thin_lens, who);
-        if (rasterizes_ && settings_.msaa > 1)
-            out_.set(Feature::msaa, fmt::format("settings: msaa {}", settings_.msaa));
-        if (settings_.aovs) out_.set(Feature::aovs, "settings: aovs");
+        if (camera.equirectangular) set(Feature::equirectangular, who);
+        if (camera.orthographic) set(Feature::orthographic, who);
+        if (!rasterizes_ && camera.lens && camera.lens->aperture_radius > 0) set(Feature::thin_lens, who);
+        if (rasterizes_ && settings_.msaa > 1) set(Feature::msaa, fmt::format("settings: msaa {}", settings_.msaa));
+        if (settings_.aovs) set(Feature::aovs, "settings: aovs");
     }
 
     const PosedScene& posed_;
     const Scene& scene_;
     const RenderSettings& settings_;
+    const std::optional<Feature> without_;
     const bool rasterizes_;
     const bool environment_shines_;
+    std::map<const Primitive*, VertexColors> colors_;
+    std::vector<bool> colors_are_solid_;  // of each material: no vertex colour of it has an alpha but 1
     bool any_lit_ = false;
     Requirements out_;
 };
@@ -273,7 +322,12 @@ void Requirements::set(Feature feature, std::string because)
 
 Requirements require(const PosedScene& posed, const RenderSettings& settings)
 {
-    return Survey(posed, settings).result();
+    return Survey(posed, settings, std::nullopt).result();
+}
+
+Requirements require_without(const PosedScene& posed, const RenderSettings& settings, Feature feature)
+{
+    return Survey(posed, settings, feature).result();
 }
 
 }  // namespace etalon

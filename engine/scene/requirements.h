@@ -84,5 +84,7 @@ struct Requirements {
 
 /// Pure: the same answer for the same scene and settings, no device asked.
 Requirements require(const PosedScene& posed, const RenderSettings& settings);
+/// The same as if nothing needed this feature, nor any texture for its sake: to measure what it costs.
+Requirements require_without(const PosedScene& posed, const RenderSettings& settings, Feature feature);
 
 }  // namespace etalon

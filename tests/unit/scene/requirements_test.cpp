@@ -75,7 +75,7 @@ TEST(Requirements, set_a_bit_for_each_thing_that_needs_it)
     };
     for (const Case& c : {
              Case{"vertex normals", [](Bench& b) { b.primitive().has_normals = true; }, "normals"},
-             Case{"vertex colours", [](Bench& b) { b.primitive().colors.assign(4, vec4(1)); }, "vertex_colors"},
+             Case{"vertex colours", [](Bench& b) { b.primitive().colors.assign(4, vec4(0.5f)); }, "vertex_colors"},
              Case{"base colour texture", [&](Bench& b) { texture(b.material().base_color_texture); },
                   "uv0 base_color_texture mipmaps"},
              Case{"of the second uv set", [&](Bench& b) { texture(b.material().base_color_texture, 1); },
