@@ -154,6 +154,12 @@ Film FilmSum::film() const
     return film;
 }
 
+PixelSums FilmSum::pixel(std::size_t i) const
+{
+    const auto triple = [i](const std::vector<double>& v) { return dvec3(v[3 * i], v[3 * i + 1], v[3 * i + 2]); };
+    return {triple(mean_), triple(m2_), alpha_[i], samples_};
+}
+
 FilmCheck check(const Film& film)
 {
     FilmCheck found;

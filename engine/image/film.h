@@ -28,17 +28,26 @@ struct Aovs {
 struct Film {
     int width = 0;
     int height = 0;
-    std::vector<vec3> mean;       ///< nit, linear Rec.709; where alpha < 1, premultiplied (the environment not included
-                                  ///< when the background is transparent)
-    std::vector<vec3> variance;   ///< variance of the mean per channel, nit^2; empty: error not measured
-    std::vector<float> alpha;     ///< coverage by the scene, 0 … 1
-    std::uint64_t samples = 0;    ///< per pixel
-    std::uint64_t nonfinite = 0;  ///< samples that were NaN or Inf: counted and left out of the mean
-    std::uint64_t truncated = 0;  ///< paths ended by the depth limit while they still carried light
-    Aovs aovs;                    ///< empty unless asked for
+    std::vector<vec3> mean;      ///< nit, linear Rec.709; where alpha < 1, premultiplied (the environment not included
+                                 ///< when the background is transparent)
+    std::vector<vec3> variance;  ///< variance of the mean per channel, nit^2; empty: error not measured
+    std::vector<float> alpha;    ///< coverage by the scene, 0 … 1
+    std::uint64_t samples = 0;   ///< per pixel; their mean, rounded, where `counts` says that pixels differ
+    std::vector<std::uint32_t> counts;  ///< samples of each pixel; empty: all have the same
+    /// Independent parts of a pixel's samples, whose means' scatter is its variance (MC-10); 0: the samples themselves.
+    std::uint32_t replicates = 0;
+    std::uint64_t nonfinite = 0;                  ///< samples that were NaN or Inf: counted and left out of the mean
+    std::uint64_t truncated = 0;                  ///< paths ended by the depth limit while they still carried light
+    Aovs aovs;                                    ///< empty unless asked for
     std::map<std::string, std::string> metadata;  ///< scene, settings, seed, version, device …; written into files
 
     std::size_t pixel_count() const { return std::size_t(width) * std::size_t(height); }
+    /// Of a pixel's variance.
+    double degrees_of_freedom(std::size_t pixel) const
+    {
+        if (replicates > 0) return double(replicates) - 1;
+        return double(counts.empty() ? samples : counts[pixel]) - 1;
+    }
 };
 
 /// Relative standard error of the whole picture: sqrt(mean of variance) / mean of radiance over all pixels and
@@ -51,6 +60,14 @@ struct ErrorEstimate {
     double high = 0;
 };
 std::optional<ErrorEstimate> estimate_error(const Film& film);
+
+/// Samples of one pixel, added up.
+struct PixelSums {
+    dvec3 mean{0};
+    dvec3 m2{0};  ///< of squared deviations from it
+    double alpha = 0;
+    std::uint64_t count = 0;
+};
 
 /// Adds up samples of a film in blocks, in double: blocks of mean and M2 (sum of squared deviations) as a device or a
 /// thread makes them are merged by Chan et al. 1979 in the order given. Promises M1-M3, docs/numerics.md.
@@ -67,6 +84,9 @@ class FilmSum {
     void restore(std::span<const double> state, std::uint64_t samples);
     /// Mean, variance of the mean (empty under 2 samples), alpha and count.
     Film film() const;
+    int width() const { return width_; }
+    int height() const { return height_; }
+    PixelSums pixel(std::size_t i) const;
 
  private:
     int width_;

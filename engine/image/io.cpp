@@ -93,6 +93,7 @@ void for_each_channel_group(Film& film, const Visit& visit)
     visit(film.mean, Names{"R", "G", "B"});
     visit(film.alpha, Names{"A"});
     visit(film.variance, Names{"variance.R", "variance.G", "variance.B"});
+    visit(film.counts, Names{"samples.count"});
     visit(film.aovs.depth, Names{"depth.Z"});
     visit(film.aovs.normal, Names{"normal.X", "normal.Y", "normal.Z"});
     visit(film.aovs.albedo, Names{"albedo.R", "albedo.G", "albedo.B"});
@@ -222,6 +223,7 @@ void write_film(const Film& film, const std::filesystem::path& path)
     std::map<std::string, std::string> text;
     for (const auto& [key, value] : film.metadata) text[kPrefix + key] = value;
     text[std::string(kPrefix) + "samples"] = std::to_string(film.samples);
+    if (film.replicates > 0) text[std::string(kPrefix) + "replicates"] = std::to_string(film.replicates);
     text[std::string(kPrefix) + "nonfinite"] = std::to_string(film.nonfinite);
     text[std::string(kPrefix) + "truncated"] = std::to_string(film.truncated);
     replace_file(path, codec::encode_exr(film.width, film.height, channels, text));
@@ -242,6 +244,8 @@ Film read_film(const std::filesystem::path& path, const Limits& limits)
     for (const auto& [key, value] : picture.text)
         if (key.starts_with(kPrefix)) film.metadata[key.substr(std::string_view(kPrefix).size())] = value;
     film.samples = parse_count(film.metadata, "samples", path.string());
+    const std::uint64_t replicates = parse_count(film.metadata, "replicates", path.string());
+    film.replicates = replicates < 2 ? 0 : static_cast<std::uint32_t>(std::min(replicates, film.samples));
     film.nonfinite = parse_count(film.metadata, "nonfinite", path.string());
     film.truncated = parse_count(film.metadata, "truncated", path.string());
     return film;

@@ -36,6 +36,7 @@ void for_each_list(SomeFilm& film, const Visit& visit)
     visit(film.mean);
     visit(film.variance);
     visit(film.alpha);
+    visit(film.counts);
     for_each_aov(film.aovs, visit);
 }
 
@@ -45,6 +46,7 @@ std::string checksum(const Film& film)
     digest.add(film.width);
     digest.add(film.height);
     digest.add(film.samples);
+    digest.add(film.replicates);
     digest.add(film.nonfinite);
     digest.add(film.truncated);
     for_each_list(film, [&](const auto& list) { digest.add(std::as_bytes(std::span(list))); });
@@ -117,6 +119,8 @@ void check_alike(const Part& a, const Part& b)
     const Film& right = b.file->film;
     const auto number = [](auto value) { return fmt::format("{}", value); };
     if (left.samples != right.samples) refuse("samples", number(left.samples), number(right.samples));
+    if (left.replicates != right.replicates)
+        refuse("number of replicates", number(left.replicates), number(right.replicates));
     if (left.width != right.width) refuse("width", number(left.width), number(right.width));
     if (a.place.picture_height != b.place.picture_height)
         refuse("height", number(a.place.picture_height), number(b.place.picture_height));

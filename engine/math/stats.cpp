@@ -214,6 +214,13 @@ double welch_dof(double variance_a, double dof_a, double variance_b, double dof_
     return (a + b) * (a + b) / (a * a / dof_a + b * b / dof_b);
 }
 
+double standard_score(double t, double dof)
+{
+    if (dof >= 30) return t;
+    const double p = student_two_sided_p(t, dof);
+    return p > 0 && p < 1 ? std::copysign(-normal_quantile(0.5 * p), t) : t;
+}
+
 double sidak_level(double family, double tests)
 {
     assume(family >= 0 && family < 1 && tests >= 1);

@@ -20,6 +20,9 @@ double normal_quantile(double p);
 /// P(|T| > |t|) of Student's t.
 double student_two_sided_p(double t, double dof);
 double log_student_two_sided_p(double t, double dof);
+/// The normal deviate of t's probability, for statements of scatter: t itself has no variance where its degrees of
+/// freedom are few. From 30 of them on t as it is.
+double standard_score(double t, double dof);
 /// The t for which P(T < t) = p, p in [0, 1].
 double student_quantile(double p, double dof);
 /// Welch & Satterthwaite: degrees of freedom of a difference of two means whose variances (of the mean) are

@@ -194,7 +194,9 @@ Comparison compare(const Film& a, const Film& b, const CompareSettings& settings
     if (settings.budgets.any()) result.verdict = over ? Verdict::over_budget : Verdict::within_budget;
     if (has_error(a) && has_error(b)) {
         result.test = welch_test(a, b, settings);
-        if (is_different(result.reasons, *result.test, std::min(a.samples, b.samples)))
+        // Replicates may well have the same mean without being constant (MC-10).
+        const bool replicated = a.replicates > 0 || b.replicates > 0;
+        if (is_different(result.reasons, *result.test, replicated ? 0 : std::min(a.samples, b.samples)))
             result.verdict = Verdict::different;
         else if (!over)
             result.verdict = Verdict::indistinguishable;

@@ -3,6 +3,7 @@
 
 #include "engine/base/error.h"
 #include "engine/image/metrics.h"
+#include "engine/math/stats.h"
 #include "engine/measure/compare.h"
 
 namespace etalon {
@@ -57,9 +58,11 @@ Image z_picture(const Film& a, const Film& b, double rounding)
     for (std::size_t i = 0; i < a.mean.size(); ++i) {
         double error = 0;
         for (int c = 0; c < 3; ++c) error += std::sqrt(double(a.variance[i][c]) + double(b.variance[i][c]));
+        const double dof =
+            welch_dof(sum(a.variance[i]), a.degrees_of_freedom(i), sum(b.variance[i]), b.degrees_of_freedom(i));
         error += rounding * std::max(magnitude(a.mean[i]), magnitude(b.mean[i]));
         const double difference = sum(a.mean[i]) - sum(b.mean[i]);
-        z.values[i] = static_cast<float>(difference == 0 ? 0 : difference / error);
+        z.values[i] = static_cast<float>(difference == 0 ? 0 : standard_score(difference / error, dof));
     }
     return signed_difference_picture(z, Image(a.width, a.height, 1), 4);
 }

@@ -327,9 +327,9 @@ std::optional<Variant> without_roulette(const Scene& scene, double /*size*/)
     return drawn_with(scene, [](RenderSettings& settings) { settings.russian_roulette = false; });
 }
 
-std::optional<Variant> with_sobol(const Scene& scene, double /*size*/)
+std::optional<Variant> with_pcg(const Scene& scene, double /*size*/)
 {
-    return drawn_with(scene, [](RenderSettings& settings) { settings.sampler = Sequence::sobol; });
+    return drawn_with(scene, [](RenderSettings& settings) { settings.sampler = Sequence::pcg; });
 }
 
 std::optional<Variant> by_reference(const Scene& scene, double /*size*/)
@@ -403,13 +403,13 @@ constexpr std::array kRelations = {
              .raster = false,
              .apply = without_roulette},
     Relation{.id = "R20",
-             .name = "Sobol's sequence",
+             .name = "independent samples",
              .unit = "",
              .start = 1,
              .promised = 1,
              .most = 1,
              .raster = false,
-             .apply = with_sobol},
+             .apply = with_pcg},
     Relation{.id = "R20",
              .name = "unbiased (reference)",
              .unit = "",

@@ -19,11 +19,13 @@ constexpr std::uint64_t kPilotSeed = 0x9e3779b97f4a7c15u;
 double chance_of_one_picture(const Film& pilot)
 {
     double sum = 0, squares = 0;
-    for (const vec3& v : pilot.variance) {
+    for (std::size_t i = 0; i < pilot.variance.size(); ++i) {
+        const vec3& v = pilot.variance[i];
         const double pixel = double(v.x) + double(v.y) + double(v.z);
         if (!std::isfinite(pixel)) continue;
         sum += pixel;
-        squares += pixel * pixel;
+        // Of the variance, not of its estimate, whose square is too large by its own scatter.
+        squares += pixel * pixel / (1 + 2 / pilot.degrees_of_freedom(i));
     }
     constexpr double kOneSided95 = 1.645;
     return sum > 0 ? 1 + kOneSided95 * std::sqrt(2 * squares) / sum : 1;

@@ -18,7 +18,7 @@ struct Sums {
     double magnitude = 0;  ///< (|a| + |b|) / 2
     double variance = 0;   ///< of `difference`
     double rounding = 0;   ///< fully correlated, so it adds up linearly
-    double spread = 0;     ///< sum of variance^2 / degrees of freedom: Satterthwaite's denominator
+    double spread = 0;     ///< sum of variance^2 / (degrees of freedom + 2): of what is known of the variance itself
 
     void add(const Sums& other)
     {
@@ -29,7 +29,12 @@ struct Sums {
         spread += other.spread;
     }
     double standard_error() const { return std::sqrt(variance + rounding * rounding); }
-    double degrees_of_freedom() const { return spread > 0 ? variance * variance / spread : kInfinity; }
+    /// Welch 1947's, which is right where the summed variances have few degrees of freedom each, as Satterthwaite's is
+    /// not: v² of one with ν of them is too large by 1 + 2/ν on average.
+    double degrees_of_freedom() const
+    {
+        return spread > 0 ? std::max(variance * variance / spread - 2, 1.0) : kInfinity;
+    }
     /// Without variance and without a difference there is nothing to test.
     bool testable() const { return variance > 0 || difference != 0; }
     double z() const
@@ -39,6 +44,7 @@ struct Sums {
         return error > 0 ? difference / error : std::copysign(kInfinity, difference);
     }
     double p() const { return student_two_sided_p(z(), degrees_of_freedom()); }
+    double score() const { return standard_score(z(), degrees_of_freedom()); }
     double relative() const { return magnitude > 0 ? difference / magnitude : 0; }
     /// The relative difference that a test at `level` finds with probability `power` (ST-4).
     double detectable(double level, double power) const
@@ -67,14 +73,17 @@ Sums pixel_sums(const Film& a, const Film& b, std::size_t i, int c, double round
 {
     const double x = a.mean[i][c];
     const double y = b.mean[i][c];
-    const double variance_a = a.variance[i][c];
+    double variance_a = a.variance[i][c];
     const double variance_b = b.variance[i][c];
+    // Where replicates agree by chance, as on an edge that all of them hit as often, the two films tell more of the
+    // error than either of them (MC-10).
+    if (variance_a + variance_b == 0 && (a.replicates > 0 || b.replicates > 0)) variance_a = (x - y) * (x - y);
     return {.difference = x - y,
             .magnitude = 0.5 * (std::abs(x) + std::abs(y)),
             .variance = variance_a + variance_b,
             .rounding = rounding * std::max(std::abs(x), std::abs(y)),
-            .spread = variance_a * variance_a / static_cast<double>(a.samples - 1) +
-                      variance_b * variance_b / static_cast<double>(b.samples - 1)};
+            .spread = variance_a * variance_a / (a.degrees_of_freedom(i) + 2) +
+                      variance_b * variance_b / (b.degrees_of_freedom(i) + 2)};
 }
 
 bool finite_pair(const Film& a, const Film& b, std::size_t i, int c)
@@ -90,8 +99,8 @@ void add_pixel(Tile& tile, const Sums& pixel, double pixel_level)
         if (std::abs(pixel.difference) > pixel.rounding) ++tile.constant_unequal;
         return;
     }
-    const double z = pixel.z();
     const double p = pixel.p();
+    const double z = pixel.score();
     ++tile.pixels;
     tile.z_sum += z;
     tile.z_square_sum += z * z;
@@ -177,7 +186,7 @@ void test_tiles(StatisticalTest& test, const std::vector<Tile>& tiles)
             if (found.p < test.level) test.failures.push_back(found);
             if (sums.variance == 0) continue;
             p_values.push_back(found.p);
-            z_square_sum += found.z * found.z;
+            z_square_sum += sums.score() * sums.score();
             ++z_count;
             ++test.tile_p_histogram[bin(found.p)];
             if (sums.magnitude > 0) detectable.push_back(sums.detectable(test.level, test.power));

@@ -120,6 +120,11 @@ PathRandom::PathRandom(std::uint32_t pixel, std::uint32_t sample, std::uint64_t 
     : pixel_(pixel), sample_(sample), seed_(fold_seed(seed)), sampler_(sampler)
 {}
 
+std::size_t PathRandom::replicates(Sequence sampler)
+{
+    return sampler == Sequence::sobol ? shared::kSobolReplicates : 1;
+}
+
 dvec2 PathRandom::pair(std::uint32_t dimension) const
 {
     const uvec4 bits = shared::random_bits(pixel_, sample_, dimension, seed_);

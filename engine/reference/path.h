@@ -13,6 +13,8 @@ namespace etalon::reference {
 class PathRandom {
  public:
     PathRandom(std::uint32_t pixel, std::uint32_t sample, std::uint64_t seed, Sequence sampler = Sequence::pcg);
+    /// Independent parts that a pixel's samples are dealt to in turn (MC-10).
+    static std::size_t replicates(Sequence sampler);
     dvec2 pair(std::uint32_t dimension) const;
     /// Where in its pixel the path starts (SH-24).
     dvec2 in_pixel() const;

@@ -1,8 +1,10 @@
 #include "engine/reference/pixel_sums.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/base/error.h"
+#include "engine/image/replicates.h"
 
 namespace etalon::reference {
 
@@ -78,33 +80,50 @@ void restore(std::vector<PixelSum>& sums, const FilmState& state)
     }
 }
 
+namespace {
+
+Pooled pool_pixel(std::span<const PixelSum> replicates)
+{
+    std::vector<PixelSums> parts;
+    for (const PixelSum& sum : replicates) parts.push_back(sum.sums());
+    return pool(parts);
+}
+
+}  // namespace
+
 Film film_of(const std::vector<PixelSum>& sums, int width, int height, std::uint64_t samples)
 {
     Film film;
     film.width = width;
     film.height = height;
     film.samples = samples;
-    film.mean.reserve(sums.size());
-    film.alpha.reserve(sums.size());
-    if (samples >= 2) film.variance.reserve(sums.size());
-    for (const PixelSum& sum : sums) {
-        film.mean.emplace_back(sum.mean());
-        film.alpha.push_back(static_cast<float>(sum.alpha()));
-        if (samples >= 2) film.variance.emplace_back(sum.variance_of_mean());
-        film.nonfinite += sum.nonfinite();
+    const std::size_t pixels = film.pixel_count(), replicates = sums.size() / pixels;
+    if (std::min<std::uint64_t>(replicates, samples) > 1)
+        film.replicates = static_cast<std::uint32_t>(std::min<std::uint64_t>(replicates, samples));
+    film.mean.reserve(pixels);
+    film.alpha.reserve(pixels);
+    if (samples >= 2) film.variance.reserve(pixels);
+    for (std::size_t i = 0; i < pixels; ++i) {
+        const auto parts = std::span(sums).subspan(i * replicates, replicates);
+        const Pooled pooled = pool_pixel(parts);
+        film.mean.emplace_back(pooled.mean);
+        film.alpha.push_back(static_cast<float>(pooled.alpha));
+        if (samples >= 2) film.variance.emplace_back(pooled.variance);
+        for (const PixelSum& sum : parts) film.nonfinite += sum.nonfinite();
     }
     return film;
 }
 
-double relative_error(const std::vector<PixelSum>& sums)
+double relative_error(const std::vector<PixelSum>& sums, std::size_t pixels)
 {
     double variance = 0, radiance = 0;
-    for (const PixelSum& sum : sums) {
-        const dvec3 v = sum.variance_of_mean(), m = sum.mean();
-        variance += v.x + v.y + v.z;
-        radiance += m.x + m.y + m.z;
+    const std::size_t replicates = sums.size() / pixels;
+    for (std::size_t i = 0; i < pixels; ++i) {
+        const Pooled pooled = pool_pixel(std::span(sums).subspan(i * replicates, replicates));
+        variance += pooled.variance.x + pooled.variance.y + pooled.variance.z;
+        radiance += pooled.mean.x + pooled.mean.y + pooled.mean.z;
     }
-    const double n = 3 * static_cast<double>(sums.size());
+    const double n = 3 * static_cast<double>(pixels);
     return radiance > 0 ? std::sqrt(variance / n) / (radiance / n) : 0;
 }
 

@@ -19,6 +19,7 @@ class PixelSum {
     const dvec3& mean() const { return mean_; }
     double alpha() const { return alpha_; }
     dvec3 variance_of_mean() const;  ///< nit²; 0 under two samples
+    PixelSums sums() const { return {mean_, m2_, alpha_, count_}; }
 
     static constexpr std::size_t kNumbers = 9;
     /// All that it holds, as kNumbers numbers, and back: to the last bit.
@@ -32,7 +33,8 @@ class PixelSum {
     std::uint64_t nonfinite_ = 0;
 };
 
-/// The film of `sums`, `samples` a pixel as the caller asked for (what was left out is in Film::nonfinite).
+/// The film of `sums`, `samples` a pixel as the caller asked for (what was left out is in Film::nonfinite): as many
+/// sums a pixel, one after another, as it has replicates (MC-10).
 Film film_of(const std::vector<PixelSum>& sums, int width, int height, std::uint64_t samples);
 
 /// What those sums are, to be taken up by restore(): `sums` of the same number. Error(input) when it is another.
@@ -40,6 +42,6 @@ FilmState state_of(const std::vector<PixelSum>& sums, int width, int height, std
 void restore(std::vector<PixelSum>& sums, const FilmState& state);
 
 /// √(mean variance of the mean) / mean radiance over the picture: what progress reports. 0 for a black picture.
-double relative_error(const std::vector<PixelSum>& sums);
+double relative_error(const std::vector<PixelSum>& sums, std::size_t pixels);
 
 }  // namespace etalon::reference

@@ -17,8 +17,9 @@ constexpr std::size_t kTile = 16;        // pixels a side: one unit of work of a
 constexpr double kSecondsPerPass = 0.5;  // how long a stop may have to wait for whole passes, roughly
 constexpr std::uint64_t kMaxSamples = 0xffffffffu;
 
-/// Adds samples first … first + count - 1 of a pixel. How many of their paths the depth limit cut.
-std::uint64_t add_samples(PixelSum& sum, const PathTracer& tracer, std::size_t pixel, std::size_t width,
+/// Adds samples first … first + count - 1 of a pixel to the sums of its replicates. How many of their paths the depth
+/// limit cut.
+std::uint64_t add_samples(std::span<PixelSum> sums, const PathTracer& tracer, std::size_t pixel, std::size_t width,
                           const RenderSettings& settings, std::uint64_t first, std::uint64_t count)
 {
     std::uint64_t truncated = 0;
@@ -28,7 +29,7 @@ std::uint64_t add_samples(PixelSum& sum, const PathTracer& tracer, std::size_t p
         const dvec2 film =
             dvec2(static_cast<double>(pixel % width), static_cast<double>(pixel / width)) + random.in_pixel();
         const PathResult path = tracer.trace(film, random);
-        sum.add(path.radiance, path.alpha);
+        sums[s % sums.size()].add(path.radiance, path.alpha);
         truncated += path.truncated ? 1 : 0;
     }
     return truncated;
@@ -55,8 +56,9 @@ class Accumulation {
           first_row_(static_cast<std::size_t>(first_row)),
           height_(static_cast<std::size_t>(end_row - first_row)),
           settings_(&settings),
-          sums_(width_ * height_),
-          next_(width_ * height_)
+          replicates_(PathRandom::replicates(settings.sampler)),
+          sums_(width_ * height_ * replicates_),
+          next_(sums_)
     {}
 
     /// True if the pass was completed.
@@ -91,7 +93,7 @@ class Accumulation {
         samples_ = state.samples;
         truncated_ = state.truncated;
     }
-    const std::vector<PixelSum>& sums() const { return sums_; }
+    double error() const { return relative_error(sums_, width_ * height_); }
     Film film() const
     {
         Film out = film_of(sums_, static_cast<int>(width_), static_cast<int>(height_), samples_);
@@ -107,10 +109,10 @@ class Accumulation {
         for (std::size_t y = tile_y * kTile; y < std::min(height_, (tile_y + 1) * kTile); ++y)
             for (std::size_t x = tile_x * kTile; x < std::min(width_, (tile_x + 1) * kTile); ++x) {
                 const std::size_t pixel = y * width_ + x;
-                PixelSum sum = sums_[pixel];
+                const std::span<PixelSum> sums = std::span(next_).subspan(pixel * replicates_, replicates_);
+                std::copy_n(sums_.begin() + std::ptrdiff_t(pixel * replicates_), replicates_, sums.begin());
                 truncated +=
-                    add_samples(sum, *tracer_, first_row_ * width_ + pixel, width_, *settings_, samples_, count);
-                next_[pixel] = sum;
+                    add_samples(sums, *tracer_, first_row_ * width_ + pixel, width_, *settings_, samples_, count);
             }
         return truncated;
     }
@@ -118,7 +120,8 @@ class Accumulation {
     const PathTracer* tracer_;
     std::size_t width_, first_row_, height_;
     const RenderSettings* settings_;
-    std::vector<PixelSum> sums_, next_;
+    std::size_t replicates_;
+    std::vector<PixelSum> sums_, next_;  // of a pixel's replicates, one after another
     std::uint64_t samples_ = 0;
     std::uint64_t truncated_ = 0;
 };
@@ -152,7 +155,7 @@ Film render_path(const PosedScene& posed, const Requirements& required, const Re
         if (seconds_since(begin) < kSecondsPerPass / 2) count *= 2;
         progress.report({.stage = "path tracing",
                          .fraction = static_cast<double>(picture.samples()) / static_cast<double>(settings.spp),
-                         .error = picture.samples() < 2 ? std::nullopt : std::optional(relative_error(picture.sums())),
+                         .error = picture.samples() < 2 ? std::nullopt : std::optional(picture.error()),
                          .samples = picture.samples()});
         if (checkpoints.keep && seconds_since(last_kept) > checkpoints.seconds) {
             checkpoints.keep(picture.state());
@@ -180,7 +183,8 @@ Film render_pixels(const PosedScene& posed, const Requirements& required, const 
 
     constexpr std::size_t kChunk = 64;
     const std::size_t chunks = (pixels.size() + kChunk - 1) / kChunk;
-    std::vector<PixelSum> sums(pixels.size());
+    const std::size_t replicates = PathRandom::replicates(settings.sampler);
+    std::vector<PixelSum> sums(pixels.size() * replicates);
     std::vector<std::uint64_t> truncated(chunks, 0);
     std::uint64_t done = 0;
     for (std::uint64_t count = 1; done < settings.spp && !(done > 0 && progress.stopped());) {
@@ -190,7 +194,8 @@ Film render_pixels(const PosedScene& posed, const Requirements& required, const 
             chunks,
             [&](std::size_t chunk) {
                 for (std::size_t k = chunk * kChunk; k < std::min(pixels.size(), (chunk + 1) * kChunk); ++k)
-                    truncated[chunk] += add_samples(sums[k], tracer, pixels[k], width, settings, done, count);
+                    truncated[chunk] += add_samples(std::span(sums).subspan(k * replicates, replicates), tracer,
+                                                    pixels[k], width, settings, done, count);
             },
             settings.threads);
         done += count;

@@ -1,11 +1,15 @@
 // Random numbers that fill the square evenly, sample after sample (MC-8): Owen-scrambled points of Sobol's
 // (0,2)-sequence, shuffled and padded (Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020). Integers, the
 // same in C++ and GLSL, without state like those of rng.h, and in their place: a pair of numbers of one decision is
-// even over the samples of its pixel, and independent of every other pair.
+// even over the samples of its pixel and replicate, and independent of every other pair.
 #ifndef ETALON_SHADERS_SHARED_SOBOL_H
 #define ETALON_SHADERS_SHARED_SOBOL_H
 #include "shaders/shared/rng.h"
 ETALON_SHARED_BEGIN
+
+/// The samples of a pixel are dealt in turn to so many replicates, each a sequence scrambled for itself: their scatter
+/// tells the error (MC-10). A power of two.
+ETALON_CONSTANT uint kSobolReplicates = 2u;
 
 ETALON_FUNCTION uint reversed_bits(uint x)
 {
@@ -51,9 +55,9 @@ ETALON_FUNCTION uvec2 sobol_pair(uint sample_index, uvec4 seeds)
 /// As random_bits of rng.h, two pairs.
 ETALON_FUNCTION uvec4 sobol_bits(uint pixel, uint sample_index, uint dimension, uint seed)
 {
-    uvec4 key = pcg4d(uvec4(pixel, dimension, seed, 0x50b01u));
-    uvec2 a = sobol_pair(sample_index, key);
-    uvec2 b = sobol_pair(sample_index, pcg4d(key));
+    uvec4 key = pcg4d(uvec4(pixel, dimension, seed, 0x50b01u + sample_index % kSobolReplicates));
+    uvec2 a = sobol_pair(sample_index / kSobolReplicates, key);
+    uvec2 b = sobol_pair(sample_index / kSobolReplicates, pcg4d(key));
     return uvec4(a.x, a.y, b.x, b.y);
 }
 

@@ -39,6 +39,45 @@ TEST(Compare, K6_equal_renderers_are_called_different_as_often_as_stated)
     EXPECT_GE(rate.high, settings.false_alarm);
 }
 
+TEST(Compare, MC_10_films_of_two_replicates_are_called_different_as_often_as_stated)
+{
+    // One degree of freedom a pixel: Satterthwaite's own formula would give a third of them to a tile.
+    constexpr int kTrials = 300;
+    const CompareSettings settings{.false_alarm = 0.1, .tile = 8};
+    std::uint64_t count = 0, against_many = 0;
+    double score = 0, tile_score = 0;
+    for (unsigned i = 0; i < kTrials; ++i) {
+        const Film a = test::replicated_film(32, 32, 8, 2, 1000 + 2 * i);
+        const Comparison found = compare(a, test::replicated_film(32, 32, 8, 2, 1001 + 2 * i), settings);
+        count += found.verdict == Verdict::different;
+        score += found.test->pixel_z_std / kTrials;
+        tile_score += found.test->tile_z_std / kTrials;
+        against_many += compare(a, noisy_film(32, 32, 16, 5001 + i), settings).verdict == Verdict::different;
+    }
+    for (const std::uint64_t alarms : {count, against_many}) {
+        const Interval rate = binomial_interval(alarms, kTrials, 1 - 1e-6);
+        EXPECT_LE(rate.low, settings.false_alarm) << alarms;
+        EXPECT_GE(rate.high, settings.false_alarm / 2) << alarms;
+    }
+    std::printf("%d and %d of %d pairs called different; std of pixel scores %.3f, of tiles %.3f\n", int(count),
+                int(against_many), kTrials, score, tile_score);
+    EXPECT_NEAR(score, 1, 0.15);
+    EXPECT_NEAR(tile_score, 1, 0.1);
+}
+
+TEST(Compare, MC_10_replicates_that_agree_by_chance_prove_no_constant_but_a_fault_of_many_pixels_is_found)
+{
+    // An edge through few pixels of which both replicates hit the same number of times.
+    Film a = constant_film(32, 32, 1.0f), b = a;
+    a.replicates = b.replicates = 2;
+    b.mean[5] = vec3(0.9f);
+    b.mean[37] = vec3(1.1f);
+    b.mean[70] = vec3(0.8f);
+    EXPECT_EQ(compare(a, b).verdict, Verdict::indistinguishable);
+    for (vec3& pixel : b.mean) pixel = vec3(1.01f);
+    EXPECT_EQ(compare(a, b).verdict, Verdict::different);
+}
+
 TEST(Compare, K6_heavy_tails_and_unlike_sample_counts_do_not_raise_the_false_alarm_rate)
 {
     constexpr int kTrials = 150;

@@ -58,6 +58,32 @@ inline Film noisy_film(int width, int height, std::uint64_t samples, std::uint64
     return film;
 }
 
+/// The same of a renderer whose `replicates` means of `samples` each are independent, while within one of them samples
+/// know of each other, so that nothing but the means tells the error (MC-10).
+inline Film replicated_film(int width, int height, std::uint64_t samples, std::uint32_t replicates, std::uint64_t seed,
+                            const Draw& draw = exponential, const Truth& truth = ramp)
+{
+    Film film = noisy_film(width, height, samples * replicates, seed, draw, truth);
+    std::mt19937_64 random(seed ^ 0x5eed);
+    film.replicates = replicates;
+    std::vector<double> means(replicates);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            for (int c = 0; c < 3; ++c) {
+                double mean = 0, scatter = 0;
+                for (double& m : means) {
+                    m = 0;
+                    for (std::uint64_t n = 0; n < samples; ++n) m += truth(x, y, c) * draw(random) / double(samples);
+                    mean += m / replicates;
+                }
+                for (const double m : means) scatter += (m - mean) * (m - mean);
+                const auto i = std::size_t(y) * std::size_t(width) + std::size_t(x);
+                film.mean[i][c] = float(mean);
+                film.variance[i][c] = float(scatter / (replicates * (replicates - 1.0)));
+            }
+    return film;
+}
+
 /// Every value `value`, known without error.
 inline Film constant_film(int width, int height, float value)
 {
