@@ -17,20 +17,38 @@ struct ShaderCost {
     std::size_t variants = 1;
 };
 
-/// What a scene's requirements make of shaders and data, against the same scene with every requirement set.
+/// Bytes that a scene takes on a device, and the passes of its picture.
+struct DataCost {
+    std::uint64_t attribute_bytes = 0;  ///< of vertices, what a shader may read of them
+    std::uint64_t texture_bytes = 0;    ///< with mip levels where there are any
+    std::size_t passes = 0;             ///< of the rasterizer; 0: it is no rasterizer
+};
+
+/// What a scene's requirements make of shaders and data, against the same scene with everything that its file has and
+/// every requirement set.
 struct SceneCosts {
     std::vector<ShaderCost> shaders;
-    std::uint64_t vertex_bytes = 0;  ///< attributes of a triangle on the device (path), all three vertices
-    std::uint64_t vertex_bytes_uber = 0;
-    std::uint64_t texture_bytes = 0;  ///< of the scene's images at 4 bytes a texel, those that are read
-    std::uint64_t texture_bytes_uber = 0;
+    DataCost data;
+    DataCost uber;
 
     std::size_t written() const;
     std::size_t special() const;
 };
 
-/// Of the rasterizer or the path tracer; no device is needed.
-SceneCosts scene_costs(const PosedScene& posed, const Requirements& required, const RenderSettings& settings);
+/// What would go if nothing needed a feature, nor any texture for its sake.
+struct RequirementCost {
+    Feature feature = Feature::count;
+    bool needed = false;            ///< without it the scene is refused: it cannot be told apart
+    std::int64_t instructions = 0;  ///< of the longest shader of each kind among those that it changes
+    std::int64_t attribute_bytes = 0;
+    std::int64_t texture_bytes = 0;
+    std::int64_t passes = 0;
+};
+
+/// Of the rasterizer or the path tracer; no device is needed. `whole`: the scene as pose_whole() has it.
+SceneCosts scene_costs(const PosedScene& whole, const PosedScene& posed, const RenderSettings& settings);
+/// Of each feature that is required, in their order.
+std::vector<RequirementCost> requirement_costs(const PosedScene& posed, const RenderSettings& settings);
 
 /// Every requirement set, whatever the scene asks for: the same pixels, only slower.
 Requirements everything(Requirements required);

@@ -2,8 +2,10 @@
 
 #include <cstring>
 #include <map>
+#include <optional>
 
 #include "engine/base/error.h"
+#include "engine/scene/simplify.h"
 #include "shaders/shared/path.h"
 
 namespace etalon {
@@ -22,9 +24,18 @@ std::uint32_t code(Wrap wrap)
     return 0;
 }
 
-/// Appends the image's texels; returns the index of the first.
-std::uint32_t add_image(PathTextures& out, const Texels& image)
+struct StoredImage {
+    std::uint32_t first = 0;  ///< texel
+    int width = 0;
+    int height = 0;
+    bool is_8_bit = true;
+};
+
+/// Appends the image's texels.
+StoredImage add_image(PathTextures& out, const Texels& whole)
 {
+    const std::optional<Texels> constant = shrunk_constant(whole);
+    const Texels& image = constant ? *constant : whole;
     const std::size_t count = std::size_t(image.width) * std::size_t(image.height);
     const std::size_t first = image.is_8_bit ? out.texels_8.size() : out.texels_wide.size();
     if (first + count > 0x7fffffffu || image.width > 0xffff || image.height > 0xffff)
@@ -36,7 +47,7 @@ std::uint32_t add_image(PathTextures& out, const Texels& image)
         out.texels_wide.resize(first + count);
         std::memcpy(&out.texels_wide[first], image.wide.data(), sizeof(vec4) * count);
     }
-    return static_cast<std::uint32_t>(first);
+    return {static_cast<std::uint32_t>(first), image.width, image.height, image.is_8_bit};
 }
 
 }  // namespace
@@ -46,7 +57,7 @@ PathTextures make_path_textures(const Scene& scene, const Requirements& required
     PathTextures out;
     out.texels_8.push_back(0xffffffffu);
     const uvec4 white(0u, 1u | 1u << 16, 0u, 0u);
-    std::map<Index, std::uint32_t> first_texel;
+    std::map<Index, StoredImage> stored;
     for (std::size_t i = 0; i < scene.textures.size(); ++i) {
         const Texture& texture = scene.textures[i];
         const bool usable = required.texture_used[i] && texture.image != kNone &&
@@ -55,14 +66,13 @@ PathTextures make_path_textures(const Scene& scene, const Requirements& required
             out.table.push_back(white);
             continue;
         }
-        const Texels& image = scene.images[texture.image];
-        const auto known = first_texel.find(texture.image);
-        const std::uint32_t first = known != first_texel.end() ? known->second : add_image(out, image);
-        first_texel[texture.image] = first;
+        const auto [known, is_new] = stored.try_emplace(texture.image);
+        if (is_new) known->second = add_image(out, scene.images[texture.image]);
+        const StoredImage& image = known->second;
         std::uint32_t flags = code(texture.sampler.wrap_u) | code(texture.sampler.wrap_v) << shared::kTextureWrapVShift;
         if (texture.sampler.mag == Filter::nearest) flags |= shared::kTextureNearest;
         if (!image.is_8_bit) flags |= shared::kTextureWide;
-        out.table.emplace_back(first, std::uint32_t(image.width) | std::uint32_t(image.height) << 16, flags, 0u);
+        out.table.emplace_back(image.first, std::uint32_t(image.width) | std::uint32_t(image.height) << 16, flags, 0u);
     }
     return out;
 }

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <string>
+#include <tuple>
 
 #include "engine/base/error.h"
+#include "engine/scene/builder.h"
 
 namespace etalon {
 namespace {
@@ -192,6 +194,7 @@ std::vector<const Primitive*> drawn_primitives(const PosedScene& posed, const Re
                  .index_count = static_cast<std::uint32_t>(index_count),
                  .first_vertex = static_cast<std::int32_t>(vertices),
                  .first_face = static_cast<std::uint32_t>(faces)};
+        std::tie(range.low, range.high) = bounds(primitive);
         vertices += drawn_vertices(primitive);
         indices += index_count;
         if (primitive.topology == Topology::triangles) faces += primitive.indices.size() / 3;
@@ -203,6 +206,17 @@ std::vector<const Primitive*> drawn_primitives(const PosedScene& posed, const Re
 }
 
 }  // namespace
+
+std::uint64_t raster_stream_bytes(const PosedScene& posed, const Requirements& required)
+{
+    std::uint64_t floats = 0;
+    for (std::size_t i = 0; i < kFormats.size(); ++i)
+        if (is_required(static_cast<RasterStream>(i), required)) floats += kFormats[i].floats;
+    std::vector<std::vector<RasterGeometry::Range>> ranges;
+    std::uint64_t vertices = 0;
+    for (const Primitive* primitive : drawn_primitives(posed, required, ranges)) vertices += drawn_vertices(*primitive);
+    return vertices * floats * sizeof(float);
+}
 
 RasterGeometry::RasterGeometry(gpu::Device& device, const PosedScene& posed, const Requirements& required)
 {

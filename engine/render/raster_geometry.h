@@ -12,6 +12,9 @@ namespace etalon {
 /// The vertex streams of mesh.vert, in the order of its locations.
 enum class RasterStream : unsigned { position, normal, tangent, uv0, uv1, color, beside, count };
 
+/// Bytes of the streams that a scene's meshes take on a device, without indices and face normals.
+std::uint64_t raster_stream_bytes(const PosedScene& posed, const Requirements& required);
+
 /// The meshes of a posed scene on a device: one buffer per attribute that is required, shared by all draws. An
 /// attribute that is not required is a single default vertex read with stride 0. Lines and points are rectangles, made
 /// of two triangles each (SH-7).
@@ -31,6 +34,7 @@ class RasterGeometry {
         std::uint32_t index_count = 0;
         std::int32_t first_vertex = 0;
         std::uint32_t first_face = 0;
+        vec3 low{0}, high{0};  ///< its box in object space
     };
     const Range& range(const Draw& draw) const
     {

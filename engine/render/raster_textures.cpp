@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "engine/base/error.h"
+#include "engine/scene/simplify.h"
 
 namespace etalon {
 
@@ -69,7 +72,7 @@ std::vector<RasterTextures::Slot> RasterTextures::slots(const Material& material
     const bool glossy = material.model == BsdfModel::specular_glossiness;
     const auto slot = [&](C constant, const TextureUse& use, Coding coding) {
         const auto binding = static_cast<std::uint32_t>(constant) - static_cast<std::uint32_t>(C::base_color_texture);
-        return Slot{binding, variant.get(constant) != 0 ? &use : nullptr, coding};
+        return Slot{binding, variant.get(constant) != 0 && use.present() ? &use : nullptr, coding};
     };
     std::vector<Slot> all{slot(C::base_color_texture, material.base_color_texture, Coding::srgb),
                           slot(C::metallic_roughness_texture, material.metallic_roughness_texture,
@@ -81,8 +84,9 @@ std::vector<RasterTextures::Slot> RasterTextures::slots(const Material& material
         const auto texture = static_cast<LayerTexture>(i);
         const bool colored = texture == LayerTexture::specular_color || texture == LayerTexture::sheen_color ||
                              texture == LayerTexture::diffuse_transmission_color;
-        all.push_back({kFirstLayerBinding + i,
-                       variant.reads(texture) ? &layer_texture(*material.layers, texture) : nullptr,
+        const bool read =
+            variant.reads(texture) && material.layers && layer_texture(*material.layers, texture).present();
+        all.push_back({kFirstLayerBinding + i, read ? &layer_texture(*material.layers, texture) : nullptr,
                        texture == LayerTexture::clearcoat_normal ? Coding::normal
                        : colored                                 ? Coding::srgb
                                                                  : Coding::linear});
@@ -105,7 +109,9 @@ void RasterTextures::require(const Material& material, const RasterVariant& vari
         const Texture& texture = scene_.textures[slot.use->texture];
         sampler(texture.sampler);
         if (texture.image == kNone || images_.contains({texture.image, slot.coding})) continue;
-        const MipChain chain = decode_mips(scene_.images[texture.image], slot.coding, mipmaps_, threads_);
+        const Texels& image = scene_.images[texture.image];
+        const std::optional<Texels> constant = shrunk_constant(image);
+        const MipChain chain = decode_mips(constant ? *constant : image, slot.coding, mipmaps_, threads_);
         images_.emplace(ImageKey{texture.image, slot.coding}, upload(chain, fmt::format("image {}", texture.image)));
     }
 }

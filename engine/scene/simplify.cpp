@@ -54,7 +54,7 @@ class Simplifier {
             if (use == nullptr || !use->present()) continue;
             const Index first = first_alike(use->texture);
             if (first == use->texture) continue;
-            remove(slot.where, fmt::format("the same as texture {}", first));
+            remove(slot.where, "another texture is the same");
             use->texture = first;
         }
         return removals.size() != before;

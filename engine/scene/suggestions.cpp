@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 #include <span>
+#include <utility>
 
 #include "engine/scene/animation.h"
 #include "engine/scene/digest.h"
@@ -29,12 +30,10 @@ constexpr Kind kConstant{"1 texture has one value everywhere: its factor can say
                          "{} textures have one value everywhere: their factors can say it"};
 constexpr Kind kNotRead{"1 texture is not read: its factor or layer is 0",
                         "{} textures are not read: their factors or layers are 0"};
-constexpr Kind kRepeatedImages{"1 image repeats another", "{} images repeat others"};
+constexpr Kind kRepeatedImages{"1 texture has an image of its own that another has too",
+                               "{} textures have images of their own that others have too"};
 constexpr Kind kRepeatedMaterials{"1 material repeats another but for its name",
                                   "{} materials repeat others but for their names"};
-constexpr Kind kUnusedImages{"1 image is used by no texture", "{} images are used by no texture", "UNUSED_OBJECT"};
-constexpr Kind kUnusedTextures{"1 texture is used by no material", "{} textures are used by no material",
-                               "UNUSED_OBJECT"};
 constexpr Kind kUnusedMaterials{"1 material is used by no mesh", "{} materials are used by no mesh", "UNUSED_OBJECT"};
 constexpr Kind kUnusedMeshes{"1 mesh is used by no node", "{} meshes are used by no node", "UNUSED_OBJECT"};
 constexpr Kind kSolid{"alphaMode of 1 material may be OPAQUE: its alpha is 1 everywhere",
@@ -145,12 +144,10 @@ class Reader {
     void count_uses()
     {
         slots_of_image_.resize(scene_.images.size());
-        texture_used_.resize(scene_.textures.size());
         for (const Material& material : scene_.materials)
             for (const TextureSlot& slot : texture_slots()) {
                 const TextureUse* const use = slot.of(material);
                 if (use == nullptr || !use->present()) continue;
-                texture_used_[use->texture] = true;
                 if (image_of(*use) != kNone) ++slots_of_image_[image_of(*use)];
             }
         solid_colors_.assign(scene_.materials.size(), true);
@@ -171,20 +168,24 @@ class Reader {
             }
     }
 
+    /// Images that no texture reads are those whose textures read an equal one instead (share_equal_images).
     void images()
     {
         const std::vector<Index> first = equal_images(scene_.images);
-        std::vector<bool> used(scene_.images.size());
-        for (const Texture& texture : scene_.textures)
-            if (texture.image != kNone) used[texture.image] = true;
-        for (Index i = 0; i < scene_.images.size(); ++i) {
-            if (scene_.images[i].width == 0) continue;
-            if (first[i] != i)
-                say(kRepeatedImages, fmt::format("/images/{} repeats /images/{}", i, first[i])).bytes +=
-                    bytes_of(scene_.images[i]);
-            else if (!used[i])
-                say(kUnusedImages, fmt::format("/images/{}", i)).bytes += bytes_of(scene_.images[i]);
-        }
+        std::map<Index, std::uint64_t> repeated;
+        for (Index i = 0; i < scene_.images.size(); ++i)
+            if (first[i] != i) repeated[first[i]] += bytes_of(scene_.images[i]);
+        std::map<Index, Index> texture_of;  // the first of each image
+        for (Index m = 0; m < scene_.materials.size(); ++m)
+            for (const TextureSlot& slot : texture_slots()) {
+                const TextureUse* const use = slot.of(scene_.materials[m]);
+                if (use == nullptr || !use->present() || !repeated.contains(image_of(*use))) continue;
+                const Index image = image_of(*use);
+                const auto [known, is_new] = texture_of.try_emplace(image, use->texture);
+                if (is_new || known->second == use->texture) continue;
+                say(kRepeatedImages, fmt::format("/materials/{}/{}", m, slot.where)).bytes +=
+                    std::exchange(repeated[image], 0);
+            }
     }
 
     void material(Index index)
@@ -263,8 +264,6 @@ class Reader {
 
     void unused()
     {
-        for (Index i = 0; i < scene_.textures.size(); ++i)
-            if (!texture_used_[i]) say(kUnusedTextures, fmt::format("/textures/{}", i));
         // The materials of other variants are used when those are chosen.
         for (Index i = 0; scene_.variants.empty() && i < scene_.materials.size(); ++i)
             if (!material_used_[i]) say(kUnusedMaterials, fmt::format("/materials/{}", i));
@@ -314,8 +313,10 @@ class Reader {
     {
         const Animation& animation = scene_.animations[index];
         for (Index c = 0; c < animation.channels.size(); ++c)
-            if (moves_nothing(animation, animation.channels[c]))
-                say(kChannels, fmt::format("/animations/{}/channels/{}", index, c));
+            if (const AnimationChannel& channel = animation.channels[c]; moves_nothing(animation, channel))
+                say(kChannels, fmt::format("/animations/{}, of {}", index,
+                                           fmt::format(fmt::runtime(animated_properties()[channel.property].pointer),
+                                                       channel.object)));
     }
 
     /// One value at all times, and that of the rest pose; nor does it undo what another animation does.
@@ -362,7 +363,7 @@ class Reader {
     const Scene& scene_;
     std::vector<std::pair<const Kind*, Found>> found_;
     std::vector<std::size_t> slots_of_image_;
-    std::vector<bool> texture_used_, material_used_, solid_colors_;
+    std::vector<bool> material_used_, solid_colors_;
     std::set<Index> moved_materials_;
     std::map<std::pair<Index, Index>, std::size_t> moved_;  // by property and object: channels of all animations
 };

@@ -92,9 +92,12 @@ float schlick_weight(float cosine)
 void glossy_reflectance(Glossy g, float cosine, out vec3 f, out vec3 hat)
 {
     float weight = schlick_weight(cosine);
-    f = g.f0 + (g.f90 - g.f0) * weight;
-    hat = f;
-    if (kSpecular || kSpecularGlossiness) hat = g.hat0 + (g.f90 - g.hat0) * weight;
+    // precise: the same to the bit whether or not F90 and F̂ of their own are compiled in.
+    precise vec3 reflected = g.f0 + (g.f90 - g.f0) * weight;
+    precise vec3 lost = reflected;
+    if (kSpecular || kSpecularGlossiness) lost = g.hat0 + (g.f90 - g.hat0) * weight;
+    f = reflected;
+    hat = lost;
     if (kIridescence) {
         ThinFilm film = make_film(cosine, g.film_ior, g.film_nanometres);
         vec3 plain = g.film_base + (g.film_specular - g.film_base) * weight;

@@ -111,11 +111,12 @@ Glossy make_glossy(Surface s, vec3 base, bool specular_glossiness, Frame local, 
         metallic *= texel.z;
         roughness *= texel.y;
     }
-    vec3 f0 = dielectric + metallic * (base - dielectric);
+    precise vec3 f0 = dielectric + metallic * (base - dielectric);  // to the bit with layers and without
     Glossy g = plain_glossy(base * (1.0 - metallic), f0, max(roughness * roughness, 1e-3));
     if (kSpecular || kSpecularGlossiness) {
         vec3 most = vec3(max_component(dielectric));
-        g.hat0 = most + metallic * (base - most);
+        precise vec3 hat0 = most + metallic * (base - most);
+        g.hat0 = hat0;
         g.f90 = f90 + metallic * (1.0 - f90);
     }
     if (kAnisotropy) {

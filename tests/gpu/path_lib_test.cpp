@@ -70,6 +70,7 @@ TEST_F(PathLib, T10_srgb_codes_decode_to_within_4e_7_relative)
     for (int i = 0; i < 256; ++i) rows.push_back(row(shared::kDecodeSrgb, vec4(float(i) / 255.f, 0, 0, 0)));
     const std::vector<vec4> got = call(rows);
     EXPECT_EQ(got[0].x, 0);
+    EXPECT_EQ(got[255].x, 1);  // white is no texture
     for (std::size_t i = 1; i < 256; ++i) {
         const double c = double(i) / 255;
         const double truth = c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 
+#include "engine/scene/digest.h"
+#include "etalon_version.h"
 #include "tools/etalon/scenes.h"
 #include "tools/etalon/settings.h"
 
@@ -54,6 +57,34 @@ PoseSettings measured_view(const Arguments& arguments, ivec2 standard)
     PoseSettings view = pose_settings(arguments);
     if (!view.size) view.size = standard;
     return view;
+}
+
+std::optional<std::filesystem::path> cache_folder(const char* kind)
+{
+    const auto variable = [](const char* name) {
+        const char* const value = std::getenv(name);
+        return std::filesystem::path(value != nullptr ? value : "");
+    };
+    // A relative path in it is to be ignored.
+    if (const auto cache = variable("XDG_CACHE_HOME"); cache.is_absolute()) return cache / "etalon" / kind;
+    if (const auto home = variable("HOME"); home.is_absolute()) return home / ".cache" / "etalon" / kind;
+    return std::nullopt;
+}
+
+std::string build_key()
+{
+    std::error_code none;
+    const auto built = std::filesystem::last_write_time(std::filesystem::read_symlink("/proc/self/exe", none), none);
+    return fmt::format("{} {}", kVersionFull, built.time_since_epoch().count());
+}
+
+std::string profile_key(const PosedScene& posed, const RenderSettings& settings, const std::string& device)
+{
+    PosedScene any_size = posed;
+    any_size.view.width = any_size.view.height = 0;
+    const dvec3 b = settings.background_color;
+    return fmt::format("{} {} {} {} {} {},{},{}", digest(any_size).text(), build_key(), device,
+                       static_cast<int>(settings.shading), static_cast<int>(settings.background), b.x, b.y, b.z);
 }
 
 }  // namespace etalon::cli

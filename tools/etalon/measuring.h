@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,5 +25,14 @@ std::vector<Renderer> measured_renderers(const Arguments& arguments);
 std::filesystem::path measuring_folder(const Arguments& arguments);
 /// Of the view options; `standard` where none says a size.
 PoseSettings measured_view(const Arguments& arguments, ivec2 standard);
+
+/// Where things that can be made again are kept, by the XDG Base Directory Specification: …/etalon/`kind`. Nothing
+/// where the user has no home.
+std::optional<std::filesystem::path> cache_folder(const char* kind);
+/// Tells this build of the program from others.
+std::string build_key();
+/// Everything that decides what settings of the rasterizer cost and give but the size of the picture: scene, view and
+/// light by their content, device and build. For ProfileStore.
+std::string profile_key(const PosedScene& posed, const RenderSettings& settings, const std::string& device);
 
 }  // namespace etalon::cli

@@ -72,7 +72,7 @@ std::optional<double> time_goal(const Arguments& arguments, const RenderSettings
 {
     const std::optional<double> seconds = arguments.number("max-time", 1e-3, 1e7);
     if (!seconds) return std::nullopt;
-    if (settings.renderer != Renderer::path && settings.renderer != Renderer::reference)
+    if (settings.renderer == Renderer::reference_raster)
         throw Error(Blame::input, "--max-time needs a renderer that can stop when the time is up",
                     "add --renderer path");
     return seconds;
@@ -82,6 +82,11 @@ TimePoint TimePlan::last_sample() const
 {
     const double left = std::max(seconds - kReserve * writing - kLastStep, 0.0);
     return begin + std::chrono::duration_cast<std::chrono::steady_clock::duration>(Seconds(left));
+}
+
+double TimePlan::left() const
+{
+    return Seconds(last_sample() - std::chrono::steady_clock::now()).count();
 }
 
 double TimePlan::spent() const

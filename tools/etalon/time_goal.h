@@ -17,7 +17,7 @@ using TimePoint = std::chrono::steady_clock::time_point;
 /// When this process was started, by the kernel's clock: loading the libraries is part of the time that people wait.
 TimePoint process_start();
 
-/// Seconds of --max-time. Refuses renderers that cannot stop early.
+/// Seconds of --max-time. Refuses the one renderer that neither stops early nor has a profile to be chosen by.
 std::optional<double> time_goal(const Arguments& arguments, const RenderSettings& settings);
 
 /// The time of one picture, and what of it is kept for reading the film back, developing and writing, estimated by
@@ -28,6 +28,8 @@ struct TimePlan {
     double writing = 0;
 
     TimePoint last_sample() const;
+    /// Seconds until then.
+    double left() const;
     /// Begin to now.
     double spent() const;
 };

@@ -2,13 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <cstdlib>
-
 #include "engine/base/error.h"
+#include "engine/measure/frontier_profile.h"
 #include "engine/scene/digest.h"
 #include "engine/scene/footprint.h"
 #include "engine/scene/knobs.h"
-#include "etalon_version.h"
 #include "tools/etalon/arguments.h"
 #include "tools/etalon/interrupt.h"
 #include "tools/etalon/measuring.h"
@@ -39,30 +37,13 @@ TradeoffSettings tradeoff_settings(const Arguments& arguments)
     return settings;
 }
 
-/// Where things that can be made again are kept, by the XDG Base Directory Specification; nothing where the user has no
-/// home.
-std::optional<std::filesystem::path> cache_folder()
-{
-    const auto variable = [](const char* name) {
-        const char* const value = std::getenv(name);
-        return std::filesystem::path(value != nullptr ? value : "");
-    };
-    // A relative path in it is to be ignored.
-    if (const auto cache = variable("XDG_CACHE_HOME"); cache.is_absolute()) return cache / "etalon" / "references";
-    if (const auto home = variable("HOME"); home.is_absolute()) return home / ".cache" / "etalon" / "references";
-    return std::nullopt;
-}
-
 /// Everything that decides the reference but its samples: scene, view and light by their content, settings, what draws
 /// it and which build of it.
 std::string cache_key(const PosedScene& posed, const RenderSettings& settings, const std::string& device)
 {
-    std::error_code none;
-    const std::filesystem::path self = "/proc/self/exe";
-    const auto built = std::filesystem::last_write_time(std::filesystem::read_symlink(self, none), none);
     std::string key =
-        fmt::format("{} {} {} {} {} {} {}", digest(posed).text(), kVersionFull, built.time_since_epoch().count(),
-                    device, static_cast<int>(settings.shading), static_cast<int>(settings.background), settings.seed);
+        fmt::format("{} {} {} {} {} {}", digest(posed).text(), build_key(), device, static_cast<int>(settings.shading),
+                    static_cast<int>(settings.background), settings.seed);
     const dvec3 b = settings.background_color;
     key += fmt::format(" {},{},{}", b.x, b.y, b.z);
     for (const Knob& knob : knobs())
@@ -95,7 +76,7 @@ int tradeoff(const Arguments& arguments)
         return renderers.draw_again(scene_name, posed, point, progress);
     };
     std::optional<ReferenceCache> cache;
-    if (const auto place = cache_folder(); place && !arguments.has("no-cache")) cache.emplace(*place);
+    if (const auto place = cache_folder("references"); place && !arguments.has("no-cache")) cache.emplace(*place);
     settings.cache = cache ? &*cache : nullptr;
     settings.cache_key = cache_key(posed, settings.standard, renderers.device_of(Renderer::path));
     settings.memory = [&](const RenderSettings& point) { return predict(posed, point).total(); };
@@ -108,6 +89,9 @@ int tradeoff(const Arguments& arguments)
         return interrupt.exit_code();
     }
     const std::vector<std::filesystem::path> written = write_tradeoff(out, folder);
+    if (const auto place = cache_folder("profiles"); place && !arguments.has("no-cache"))
+        ProfileStore(*place).keep(profile_key(posed, settings.standard, renderers.device_of(Renderer::raster)),
+                                  profile_of(out));
     put(arguments.has("json") ? tradeoff_json(out) : tradeoff_table(out));
     say(fmt::format("report: {}", written.front().string()));
     return interrupt.stopped() ? interrupt.exit_code() : 0;
