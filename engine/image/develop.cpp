@@ -6,6 +6,7 @@
 #include <map>
 
 #include "engine/base/error.h"
+#include "engine/base/parallel.h"
 
 namespace etalon {
 namespace {
@@ -91,6 +92,20 @@ dvec3 tone_agx(const dvec3& exposed)
     return srgb_from_rec2020 * linear;
 }
 
+void develop_pixel(const dvec3& radiance, double alpha, double factor, Tone tone, float* out)
+{
+    if (!is_finite(radiance) || !std::isfinite(alpha)) {
+        std::copy_n(std::begin({1.0f, 0.0f, 1.0f, 1.0f}), 4, out);
+        return;
+    }
+    const double coverage = std::clamp(alpha, 0.0, 1.0);
+    // The film is premultiplied; a pixel without coverage has no colour to speak of beyond what it holds.
+    const dvec3 color = coverage > 0 ? radiance / coverage : radiance;
+    const dvec3 toned = apply_tone(tone, glm::max(color * factor, dvec3(0)));
+    for (int c = 0; c < 3; ++c) out[c] = float(srgb_from_linear(std::clamp(toned[c], 0.0, 1.0)));
+    out[3] = float(coverage);
+}
+
 }  // namespace
 
 double srgb_from_linear(double linear)
@@ -162,21 +177,11 @@ Image develop(const Film& film, const DevelopSettings& settings)
     assume(film.mean.size() == film.pixel_count() && film.alpha.size() == film.pixel_count());
     const double factor = exposure_factor(settings.exposure);
     Image image(film.width, film.height, 4);
-    for (std::size_t i = 0; i < film.mean.size(); ++i) {
-        float* pixel = &image.values[4 * i];
-        const dvec3 radiance(film.mean[i]);
-        const auto alpha = double(film.alpha[i]);
-        if (!is_finite(radiance) || !std::isfinite(alpha)) {
-            std::copy_n(std::begin({1.0f, 0.0f, 1.0f, 1.0f}), 4, pixel);
-            continue;
-        }
-        const double coverage = std::clamp(alpha, 0.0, 1.0);
-        // The film is premultiplied; a pixel without coverage has no colour to speak of beyond what it holds.
-        const dvec3 color = coverage > 0 ? radiance / coverage : radiance;
-        const dvec3 toned = apply_tone(settings.tone, glm::max(color * factor, dvec3(0)));
-        for (int c = 0; c < 3; ++c) pixel[c] = float(srgb_from_linear(std::clamp(toned[c], 0.0, 1.0)));
-        pixel[3] = float(coverage);
-    }
+    const auto row = [&](std::size_t y) {
+        for (std::size_t i = y * std::size_t(film.width); i < (y + 1) * std::size_t(film.width); ++i)
+            develop_pixel(dvec3(film.mean[i]), film.alpha[i], factor, settings.tone, &image.values[4 * i]);
+    };
+    parallel_for(std::size_t(film.height), row);
     return image;
 }
 

@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include "engine/math/stats.h"
 #include "path_shaders.h"
 #include "shaders/shared/material.h"
 #include "tests/gpu/device_test.h"
+#include "tests/gpu/direction_bins.h"
 
 namespace etalon::test {
 namespace {
@@ -82,24 +82,17 @@ class PathBsdf : public DeviceTest {
     }
 };
 
-constexpr int kBins = 10;   // in each direction
 constexpr int kFine = 250;  // cells of the quadrature in each direction
 constexpr shared::uint kDraws = 50000;
-
-int bin_of(double x)
-{
-    return std::clamp(static_cast<int>(x * kBins), 0, kBins - 1);
-}
 
 TEST_F(PathBsdf, S15_S16_samples_follow_their_density)
 {
     for (const Case& c : cases()) {
-        std::vector<double> counts(kBins * kBins), expected(kBins * kBins);
+        DirectionBins bins;
         double drawn = 0;
         for (const BsdfResult& r : draw(c.bsdf, kDraws)) {
             if (r.value == vec3(0)) continue;
-            const double turns = std::atan2(double(r.wi.y), double(r.wi.x)) / (2 * kPi);
-            ++counts[std::size_t(bin_of((r.wi.z + 1) / 2) * kBins + bin_of(turns - std::floor(turns)))];
+            bins.add_draw(r.wi);
             ++drawn;
         }
         const std::vector<BsdfResult> grid = evaluate_on_grid(c.bsdf, kFine);
@@ -107,31 +100,14 @@ TEST_F(PathBsdf, S15_S16_samples_follow_their_density)
         for (int y = 0; y < kFine; ++y)
             for (int x = 0; x < kFine; ++x) {
                 const double p = grid[std::size_t(y * kFine + x)].pdf * 4 * kPi / (kFine * kFine);
-                expected[std::size_t(y * kBins / kFine * kBins + x * kBins / kFine)] += p * kDraws;
+                bins.add_expected(x, y, kFine, p * kDraws);
                 total += p;
             }
         EXPECT_LT(total, 1.002) << c.why;
         // Samples below the surface are not drawn again: their share is missing from both.
         EXPECT_NEAR(drawn / kDraws, total, 0.006) << c.why << " " << c.bsdf.wo.z;
-
-        double statistic = 0, pooled = 0, pooled_expected = 0;
-        int dof = 0;
-        for (std::size_t i = 0; i < counts.size(); ++i) {
-            if (expected[i] < 10) {  // the usual bound for the approximation to hold
-                pooled += counts[i];
-                pooled_expected += expected[i];
-                continue;
-            }
-            statistic += std::pow(counts[i] - expected[i], 2) / expected[i];
-            ++dof;
-        }
-        if (pooled_expected >= 10) {
-            statistic += std::pow(pooled - pooled_expected, 2) / pooled_expected;
-            ++dof;
-        }
         // False alarms: one in 10^5 for each of the twelve cases.
-        EXPECT_GT(chi_square_p(statistic, dof), 1e-5)
-            << c.why << " at cosine " << c.bsdf.wo.z << ": " << statistic << " / " << dof;
+        EXPECT_GT(bins.p_value(), 1e-5) << c.why << " at cosine " << c.bsdf.wo.z;
     }
 }
 

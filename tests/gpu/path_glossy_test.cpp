@@ -5,11 +5,11 @@
 #include <cmath>
 #include <functional>
 
-#include "engine/math/stats.h"
 #include "engine/render/albedo.h"
 #include "path_shaders.h"
 #include "shaders/shared/albedo.h"
 #include "tests/gpu/device_test.h"
+#include "tests/gpu/direction_bins.h"
 
 namespace etalon::test {
 namespace {
@@ -316,26 +316,19 @@ TEST_F(PathGlossy, SH50_to_SH62_values_are_those_of_the_equations)
     }
 }
 
-constexpr int kBins = 10;   // in each direction
 constexpr int kFine = 150;  // cells of the quadrature in each direction
 constexpr shared::uint kDraws = 30000;
-
-int bin_of(double x)
-{
-    return std::clamp(static_cast<int>(x * kBins), 0, kBins - 1);
-}
 
 TEST_F(PathGlossy, SH64_samples_follow_their_density_and_carry_what_the_surface_gives_back)
 {
     for (const Layered& s : surfaces()) {
-        std::vector<double> counts(kBins * kBins), expected(kBins * kBins);
+        DirectionBins bins;
         dvec3 sum(0), square(0), exact(0);
         for (const GlossyResult& r : draw(s, kDraws)) {
             sum += dvec3(r.value);
             square += dvec3(r.value) * dvec3(r.value);
             if (!(r.pdf > 0)) continue;
-            const double turns = std::atan2(double(r.wi.y), double(r.wi.x)) / (2 * kPi);
-            ++counts[std::size_t(bin_of((r.wi.z + 1) / 2) * kBins + bin_of(turns - std::floor(turns)))];
+            bins.add_draw(r.wi);
         }
         const std::vector<GlossyResult> grid = evaluate_on_grid(s, kFine);
         double total = 0;
@@ -343,21 +336,13 @@ TEST_F(PathGlossy, SH64_samples_follow_their_density_and_carry_what_the_surface_
             for (int x = 0; x < kFine; ++x) {
                 const GlossyResult& r = grid[std::size_t(y * kFine + x)];
                 const double p = r.pdf * 4 * kPi / (kFine * kFine);
-                expected[std::size_t(y * kBins / kFine * kBins + x * kBins / kFine)] += p * kDraws;
+                bins.add_expected(x, y, kFine, p * kDraws);
                 total += p;
                 exact += dvec3(r.value) * (4 * kPi / (kFine * kFine));
             }
         EXPECT_LT(total, 1.003) << s.why;
-        double statistic = 0;
-        int dof = 0;
-        for (std::size_t i = 0; i < counts.size(); ++i) {
-            if (expected[i] < 10) continue;  // the usual bound for the approximation to hold
-            statistic += std::pow(counts[i] - expected[i], 2) / expected[i];
-            ++dof;
-        }
         // False alarms: one in 10^5 for each of the surfaces.
-        EXPECT_GT(chi_square_p(statistic, dof), 1e-5)
-            << s.why << " at " << s.cosine << ": " << statistic << " / " << dof;
+        EXPECT_GT(bins.p_value(), 1e-5) << s.why << " at " << s.cosine;
         for (int i = 0; i < 3; ++i) {
             const double mean = sum[i] / kDraws;
             const double error = std::sqrt(std::max(square[i] / kDraws - mean * mean, 0.0) / kDraws);
