@@ -184,7 +184,7 @@ RasterShader::RasterShader(const World& world, const RenderSettings& settings)
       shares_(shares_for(world.posed->materials(), settings.shading == Shading::blinn_phong, settings.threads)),
       emitters_(raster_emitters(world)),
       blinn_phong_(settings.shading == Shading::blinn_phong),
-      shadows_(settings.shadows == Shadows::map),
+      shadows_(settings.shadows != Shadows::none),
       background_(settings.background),
       background_color_(settings.background_color)
 {}

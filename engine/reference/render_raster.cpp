@@ -235,6 +235,9 @@ Film render_raster(const PosedScene& posed, const Requirements& required, const 
 {
     assume(posed.scene != nullptr && posed.view.width > 0 && posed.view.height > 0);
     check_knobs(settings);
+    if (settings.ambient_rays > 0)
+        throw Error(Blame::input, "the reference rasterizer has no --ambient-rays",
+                    "render with --renderer raster, or by paths with --renderer reference");
     progress.report({.stage = "decoding textures", .fraction = 0, .error = {}, .samples = {}});
     Film film = settings.ssaa == 1 && settings.pixel_filter == PixelFilter::box
                     ? draw_picture(posed, required, settings, progress)

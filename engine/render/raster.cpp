@@ -61,6 +61,25 @@ dvec3 center_of(const PosedScene& posed, const Draw& draw)
     return dvec3(draw.world_from_object * dvec4((dvec3(low) + dvec3(high)) / 2.0, 1));
 }
 
+/// Layers that change nothing come last, for the materials that have none: shaders that look for layers find these.
+std::vector<shared::LayerRecord> with_bare_layers(std::span<const Material> materials)
+{
+    std::vector<shared::LayerRecord> records = pack_layers(materials);
+    Material bare;
+    bare.layers.emplace();
+    records.push_back(pack_layers(std::span(&bare, 1)).front());
+    return records;
+}
+
+std::vector<shared::MaterialRecord> with_layers(std::span<const Material> materials)
+{
+    std::vector<shared::MaterialRecord> records = pack_materials(materials);
+    const auto bare = static_cast<shared::uint>(pack_layers(materials).size());
+    for (shared::MaterialRecord& record : records)
+        if (record.layers == shared::kNoLayers) record.layers = bare;
+    return records;
+}
+
 }  // namespace
 
 RasterScene::RasterScene(gpu::Device& device, const PosedScene& posed, const Requirements& required,
@@ -76,8 +95,8 @@ RasterScene::RasterScene(gpu::Device& device, const PosedScene& posed, const Req
       pipelines_(device, geometry_.streams(), RasterGeometry::attributes()),
       frame_(device, {.size = sizeof(shared::RasterFrame), .memory = gpu::MemoryKind::upload, .name = "frame"}),
       aov_frame_(device, {.size = sizeof(shared::RasterFrame), .memory = gpu::MemoryKind::upload, .name = "AOV frame"}),
-      materials_(gpu::make_buffer(device, pack_materials(posed.materials()), "materials")),
-      layers_(gpu::make_buffer(device, pack_layers(posed.materials()), "material layers")),
+      materials_(gpu::make_buffer(device, with_layers(posed.materials()), "materials")),
+      layers_(gpu::make_buffer(device, with_bare_layers(posed.materials()), "material layers")),
       lights_(device, {.size = posed.lights.size() * sizeof(shared::LightRecord),
                        .memory = gpu::MemoryKind::upload,
                        .name = "lights"}),
@@ -100,6 +119,7 @@ RasterScene::RasterScene(gpu::Device& device, const PosedScene& posed, const Req
     add_environment();
     add_albedo();
     add_shadows();
+    add_rays(progress);
     nothing_behind_ = upload_picture(device, Image(), "nothing behind");
     frame_bindings_ = bind_frame(frame_, nothing_behind_);
     for (const gpu::Buffer& frame : shadow_frames_) shadow_bindings_.push_back(bind_frame(frame, nothing_behind_));
@@ -143,7 +163,7 @@ void RasterScene::add_albedo()
         const Material& material = posed_.materials()[item.material];
         const bool own = variants_.has_layers(material);
         any |= own || variants_.is_glossy(material);
-        sheen |= own && material.layers && material.layers->sheen_color != dvec3(0);
+        sheen |= own && required_.has(Feature::sheen);
     }
     const bool reflects = !posed_.environment.is_black();
     const auto make = [&] {
@@ -156,8 +176,7 @@ void RasterScene::add_albedo()
 
 void RasterScene::add_shadows()
 {
-    const bool wanted = settings_.shadows == Shadows::map && required_.has(Feature::punctual_lights);
-    if (wanted && !posed_.lights.empty()) shadows_.emplace(device_, posed_);
+    if (variants_.shadows() == Shadows::map) shadows_.emplace(device_, posed_);
     const std::size_t records = std::max<std::size_t>(1, shadows_ ? 6 * posed_.lights.size() : 0);
     shadow_records_ = {
         device_,
@@ -180,6 +199,24 @@ void RasterScene::add_shadows()
         if (cones) item.shadow = &pipelines_.get(variant(RasterTarget::shadow));
         if (parallel) item.parallel_shadow = &pipelines_.get(variant(RasterTarget::parallel_shadow));
     }
+}
+
+void RasterScene::add_rays(const Progress& progress)
+{
+    nothing_lit_ = {device_,
+                    {.format = VK_FORMAT_R32G32B32A32_UINT,
+                     .width = 1,
+                     .height = 1,
+                     .usage = VK_IMAGE_USAGE_SAMPLED_BIT,
+                     .name = "nothing lit"}};
+    const uvec4 nothing(0);
+    gpu::upload(device_, nothing_lit_, std::array{gpu::ImagePart{.texels = std::as_bytes(std::span(&nothing, 1))}});
+    const PathGather::Wanted wanted{.paths = variants_.gathers_light() ? settings_.ambient_rays : 0,
+                                    .shadows = variants_.shadows() == Shadows::ray};
+    if (wanted.paths == 0 && !wanted.shadows) return;
+    const Stopwatch watch;
+    rays_.emplace(device_, posed_, settings_, wanted, progress);
+    times_.push_back({"scene for rays", watch.milliseconds()});
 }
 
 void RasterScene::add_items(const Progress& progress)
@@ -257,7 +294,9 @@ RasterScene::FrameBindings RasterScene::bind_frame(const gpu::Buffer& frame, con
                                            {7, albedo_},
                                            {8, behind},
                                            {9, shadow_records_},
-                                           {10, shadows_ ? shadows_->depths() : albedo_}};  // the latter is not read
+                                           {10, shadows_ ? shadows_->depths() : albedo_},  // the latter is not read
+                                           {11, rays_ ? rays_->light() : nothing_behind_},
+                                           {12, rays_ ? rays_->lit() : nothing_lit_}};
         bindings.emplace(shape, gpu::Bindings(device_, pipeline.layout(), binds, 0));
     };
     for (const Item& item : items_) bind(item.shape, *item.color);

@@ -2,12 +2,14 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/base/progress.h"
 #include "engine/gpu/commands.h"
 #include "engine/image/film.h"
 #include "engine/render/environment.h"
+#include "engine/render/path_gather.h"
 #include "engine/render/raster_behind.h"
 #include "engine/render/raster_emitters.h"
 #include "engine/render/raster_filter.h"
@@ -25,6 +27,9 @@ struct RasterStage {
     std::string name;
     double milliseconds = 0;
 };
+
+/// The names of the passes that make up a picture of these requirements, in order.
+std::vector<std::string_view> raster_passes(const Requirements& required);
 
 /// A posed scene on a device, ready to be drawn from any view: docs/shading.md §4. Geometry, textures, environment
 /// tables and pipelines are made once, as `required` says. `posed` (with its scene) must outlive it; posed.view is not
@@ -85,6 +90,8 @@ class RasterScene {
     void draw_background(gpu::Commands& commands) const;
     void draw_aovs(gpu::Commands& commands, const View& view);
     void add_shadows();
+    void add_rays(const Progress& progress);
+    void trace_rays(const View& view);
     void draw_shadows(gpu::Commands& commands);
     const gpu::GraphicsPipeline& pipeline_of(const Item& item, RasterTarget target) const;
     /// The items that `wanted` says, in their order.
@@ -94,6 +101,8 @@ class RasterScene {
     };
     void draw_items(gpu::Commands& commands, const View& view, const Selection& wanted, RasterTarget target,
                     const FrameBindings& frame) const;
+    /// Nothing of it can be seen from there.
+    bool is_hidden(const Item& item, const View& view, RasterTarget target) const;
     void draw_mesh(gpu::Commands& commands, const View& view, const Item& item, RasterTarget target) const;
     void draw_sphere(gpu::Commands& commands, const View& view, const Item& item) const;
     std::vector<const Item*> ordered(const Selection& wanted, const View& view) const;
@@ -134,6 +143,9 @@ class RasterScene {
     std::vector<gpu::Buffer> shadow_frames_;  // of each map
     std::vector<FrameBindings> shadow_bindings_;
     bool shadows_drawn_ = false;
+    std::optional<PathGather> rays_;  // nothing: no ray is asked for
+    double rays_milliseconds_ = 0;
+    gpu::Image nothing_lit_;
     std::optional<RasterFilter> filter_;  // nothing: a drawn pixel is a pixel
     RasterTargets targets_;
     std::optional<gpu::Commands> commands_;  // of the last draw

@@ -9,6 +9,7 @@
 #include "engine/render/raster.h"
 #include "engine/render/render.h"
 #include "engine/scene/knobs.h"
+#include "engine/scene/unseen.h"
 
 namespace etalon {
 namespace {
@@ -51,6 +52,18 @@ void write(const gpu::Buffer& buffer, std::span<const T> values)
 
 }  // namespace
 
+std::vector<std::string_view> raster_passes(const Requirements& required)
+{
+    std::vector<std::string_view> names;
+    for (const RasterPass& pass : kPasses)
+        if (pass.needed(required)) names.emplace_back(pass.name);
+    if (needs_transmission(required)) names.emplace_back("levels behind");
+    if (required.has(Feature::visible_background)) names.emplace_back("background");
+    if (required.has(Feature::msaa)) names.emplace_back("resolve");
+    if (required.has(Feature::aovs)) names.emplace_back("aovs");
+    return names;
+}
+
 void RasterScene::resize(const View& view)
 {
     const View fine = drawn(view);
@@ -66,9 +79,17 @@ void RasterScene::resize(const View& view)
                                       .aovs = settings_.aovs && required_.has(Feature::aovs),
                                       .levels = behind_.has_value()});
     if (filter_) filter_->bind(targets_);
+    if (rays_ && rays_->resize(fine)) frame_bindings_ = bind_frame(frame_, nothing_behind_);
     if (!behind_) return;
     behind_->bind(targets_);
     behind_bindings_ = bind_frame(frame_, targets_.levels);
+}
+
+void RasterScene::trace_rays(const View& view)
+{
+    const auto start = std::chrono::steady_clock::now();
+    rays_->run(view);
+    rays_milliseconds_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
 View RasterScene::drawn(View view) const
@@ -109,6 +130,7 @@ void RasterScene::draw(const View& view)
     resize(view);
     write_lights(view);
     write_frame(frame_, drawn(view), settings_.ssaa, settings_.depth);
+    if (rays_) trace_rays(drawn(view));
     gpu::Commands& commands = commands_.emplace(device_, "raster");
     if (shadows_ && !shadows_drawn_) draw_shadows(commands);
     draw_color(commands, drawn(view));
@@ -246,6 +268,7 @@ void RasterScene::draw_items(gpu::Commands& commands, const View& view, const Se
     const gpu::GraphicsPipeline* bound = nullptr;
     std::optional<RasterShape> shape;
     for (const Item* item : ordered(wanted, view)) {
+        if (is_hidden(*item, view, target)) continue;
         const gpu::GraphicsPipeline* pipeline = &pipeline_of(*item, target);
         if (pipeline != bound) commands.bind(*pipeline);
         if (shape != item->shape) {
@@ -260,6 +283,16 @@ void RasterScene::draw_items(gpu::Commands& commands, const View& view, const Se
         else
             draw_sphere(commands, view, *item);
     }
+}
+
+bool RasterScene::is_hidden(const Item& item, const View& view, RasterTarget target) const
+{
+    // What lies behind a light's eye may be between the light and the scene; lines and points are wider than their box.
+    if (item.shape != RasterShape::mesh || (target != RasterTarget::color && target != RasterTarget::aovs)) return false;
+    const Draw& draw = posed_.draws[item.index];
+    if (posed_.primitive(draw).topology != Topology::triangles) return false;
+    const RasterGeometry::Range& range = geometry_.range(draw);
+    return is_outside(view, draw.world_from_object, range.low, range.high);
 }
 
 void RasterScene::draw_mesh(gpu::Commands& commands, const View& view, const Item& item, RasterTarget target) const
@@ -324,6 +357,7 @@ std::vector<RasterStage> RasterScene::times() const
     std::vector<RasterStage> all = times_;
     if (commands_)
         for (const gpu::RegionTime& region : commands_->times()) all.push_back({region.name, region.milliseconds});
+    if (rays_) all.push_back({"rays", rays_milliseconds_});
     all.push_back({"read", read_milliseconds_});
     return all;
 }

@@ -47,7 +47,8 @@ enum class RasterConstant : unsigned {
     probes,
     element,  ///< of shaders/raster/features.glsl
     depth,    ///< DepthKind
-    shadows,
+    shadows,  ///< Shadows
+    gathered_light,
     count
 };
 
@@ -105,6 +106,10 @@ class RasterVariants {
 
     /// Samples a pixel.
     std::uint32_t samples() const { return samples_; }
+    /// How punctual lights cast shadows here: Shadows::none where there are no lights.
+    Shadows shadows() const { return shadows_; }
+    /// Light but that of punctual lights comes by rays (SH-44); not of Blinn and Phong.
+    bool gathers_light() const { return gathered_light_; }
     /// True where faces are culled by their side: every single-sided material but the dielectrics (SH-32).
     bool culls_back(const Material& material) const;
     /// glTF's own models under their own shading: energy of rough reflection (SH-53), layers.
@@ -116,6 +121,7 @@ class RasterVariants {
     void set_frame(RasterVariant& variant) const;
     void set_material(RasterVariant& variant, const Material& material) const;
     void set_layers(RasterVariant& variant, const MaterialLayers& layers) const;
+    void set_everything(RasterVariant& variant, const Material& material) const;
     void set_layer(RasterVariant& variant, RasterConstant constant, Feature feature, const MaterialLayers& layers,
                    std::initializer_list<LayerTexture> textures) const;
     bool uses(RasterVariant& variant, Feature feature, const TextureUse& use) const;
@@ -123,8 +129,10 @@ class RasterVariants {
 
     const PosedScene& posed_;
     const Requirements& required_;
+    bool uber_;  // every requirement is set: all that a surface could have is computed, and comes to nothing
     bool blinn_phong_;
-    bool shadows_;
+    Shadows shadows_;
+    bool gathered_light_;
     std::uint32_t samples_;
     DepthKind depth_;
     std::uint32_t probes_;       // of an anisotropic look-up

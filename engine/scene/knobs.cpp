@@ -54,8 +54,8 @@ constexpr std::array kKnobs = {
          .scope = KnobScope::path,
          .what = "random numbers of paths: independent ones, or Owen-scrambled Sobol points, which fill their squares "
                  "evenly",
-         .buys = "sobol: an error that falls faster with the samples where pictures are smooth",
-         .costs = "sobol: the estimated error is then an upper bound, not the error itself",
+         .buys = "pcg: a pixel's variance is known from all its samples, not from two replicates of them",
+         .costs = "pcg: more error of the same samples, the more the smoother the picture",
          .metric = KnobMetric::relmse},
     Knob{.name = "glass-shadows",
          .type = Switch{},
@@ -163,15 +163,31 @@ constexpr std::array kKnobs = {
          .costs = "surfaces that lie near one another fight where they are far away",
          .metric = KnobMetric::relmse},
     Knob{.name = "shadows",
-         .type = NameChoice{{"none", "map"}, 2},
+         .type = NameChoice{{"none", "map", "ray"}, 3},
          .field = &RenderSettings::shadows,
          .unit = "",
          .scope = KnobScope::raster,
-         .what = "shadows of point, spot and directional lights in rasterizers: none, or by shadow maps (the reference "
-                 "rasterizer: by rays)",
-         .buys = "one more drawing of the scene for each light, six for a point light",
-         .costs = "lights shine through everything",
+         .what = "shadows of point, spot and directional lights in rasterizers: none, by shadow maps, or by a ray from "
+                 "each pixel (the reference rasterizer: by rays)",
+         .buys =
+             "map: one more drawing of the scene for each light, six for a point light; ray: a BVH of the scene, and "
+             "a ray a pixel and light",
+         .costs = "none: lights shine through everything; map: blurred edges, no details under a texel",
          .metric = KnobMetric::relmse},
+    Knob{.name = "ambient-rays",
+         .type = CountRange{0, 4096},
+         .field = &RenderSettings::ambient_rays,
+         .unit = "paths/drawn pixel",
+         .scope = KnobScope::raster,
+         .what =
+             "paths from each pixel's surface that find what the scene itself hides of the environment and reflects "
+             "instead, of at most --max-depth segments; 0 is none",
+         .buys = "a BVH of the scene, and time that is linear in it",
+         .costs =
+             "0: the environment shines through everything, nothing lights anything else; few: noise where something "
+             "is in the way",
+         .metric = KnobMetric::relmse,
+         .tried = {"0", "16", "64"}},
     Knob{.name = "threads",
          .type = CountRange{0, 1024},
          .field = &RenderSettings::threads,

@@ -25,8 +25,8 @@ enum class TextureFilter { file, nearest, bilinear, trilinear };
 /// What the rasterizers compare: reversed with an infinite far plane, or forward from near to the scene's far end.
 enum class DepthKind { reversed_32, forward_32, forward_24, forward_16 };
 
-/// Of punctual lights, in rasterizers.
-enum class Shadows { none, map };
+/// Of punctual lights, in rasterizers: none, by shadow maps, or by rays.
+enum class Shadows { none, map, ray };
 
 /// How next-event estimation chooses among emitters: by what each could send to the point, or by power alone.
 enum class LightSelection { tree, power };
@@ -59,7 +59,7 @@ struct RenderSettings {
     int max_depth = 8;  ///< most segments of a path from camera to light (1: emission alone)
     bool russian_roulette = true;
     LightSelection light_selection = LightSelection::tree;
-    Sequence sampler = Sequence::pcg;
+    Sequence sampler = Sequence::sobol;
     bool glass_shadows = false;  ///< shadow rays go straight through surfaces that transmit (SH-70)
     Shard shard;                 ///< path tracers: the rows that the film has
     int msaa = 4;                ///< coverage samples per drawn pixel of the rasterizers: 1, 2, 4, 8 or 16
@@ -72,6 +72,7 @@ struct RenderSettings {
     int point_size = 1;  ///< rasterizers: of points, pixels
     int line_width = 1;  ///< rasterizers: of lines, pixels
     Shadows shadows = Shadows::none;
+    int ambient_rays = 0;  ///< rasterizer: paths a drawn pixel that find what the scene itself does to light (SH-44)
     bool aovs = false;     ///< also fill Film::aovs
     unsigned threads = 0;  ///< CPU threads; 0: one per core. Never changes a bit of the picture.
 };

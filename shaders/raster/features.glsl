@@ -39,11 +39,16 @@ layout(constant_id = 31) const uint kLayerTextures = 0u;     // bit i: texture i
 layout(constant_id = 32) const uint kProbes = 1u;            // most probes of an anisotropic look-up (TX-6)
 layout(constant_id = 33) const uint kElement = 0u;           // kElementTriangle …
 layout(constant_id = 34) const uint kDepth = 0u;             // DepthKind: 0 is reversed, the others forward (TF-7)
-layout(constant_id = 35) const bool kShadows = false;        // of punctual lights (SH-43)
+layout(constant_id = 35) const uint kShadows = 0u;           // kShadowsNone … (SH-43), (SH-45)
+layout(constant_id = 36) const bool kGatheredLight = false;  // light by rays, not by tables (SH-44)
 
 const uint kElementTriangle = 0u;
 const uint kElementLine = 1u;   // a rectangle between its ends
 const uint kElementPoint = 2u;  // a square
+
+const uint kShadowsNone = 0u;
+const uint kShadowsMap = 1u;
+const uint kShadowsRay = 2u;
 
 const uint kEnvironmentNone = 0u;
 const uint kEnvironmentConstant = 1u;

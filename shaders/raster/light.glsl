@@ -1,7 +1,8 @@
-// The radiance of a surface towards the viewer: docs/shading.md (SH-31), (SH-43).
+// The radiance of a surface towards the viewer: docs/shading.md (SH-31), (SH-43) to (SH-45).
 #ifndef ETALON_SHADERS_RASTER_LIGHT_GLSL
 #define ETALON_SHADERS_RASTER_LIGHT_GLSL
 #include "shaders/raster/behind.glsl"
+#include "shaders/raster/gathered.glsl"
 #include "shaders/raster/shadow.glsl"
 
 /// (SH-22) Irradiance on a surface that faces the light, lux or candela per square metre; `wi` points to it.
@@ -26,14 +27,15 @@ vec3 arriving(LightRecord light, vec3 position, out vec3 wi)
     return light.color_intensity * (attenuation / d2);
 }
 
-vec3 punctual_light(Seen v, vec3 position)
+vec3 punctual_light(Seen v, vec3 position, Gathered gathered)
 {
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < frame.light_count; ++i) {
         vec3 wi;
         const vec3 irradiance = arriving(lights[i], position, wi);
         vec3 light = scattered(v, wi) * irradiance;
-        if (kShadows && light != vec3(0.0)) light *= lit_share(i, position, v.s.ng);
+        if (kShadows == kShadowsMap && light != vec3(0.0)) light *= lit_share(i, position, v.s.ng);
+        if (kShadows == kShadowsRay && !is_lit(gathered, i)) light = vec3(0.0);
         sum += light;
     }
     return sum;
@@ -161,10 +163,13 @@ vec3 radiance(Surface s, vec3 position, uint object_id)
     if (kModel == kModelUnlit) return s.base;
     if (!kLit) return s.base + s.emission;
     const Seen v = seen_from(s, towards_viewer(position));
+    Gathered gathered = Gathered(vec3(0.0), uvec3(0u), false);
+    if (kGatheredLight || kShadows == kShadowsRay) gathered = gathered_at(position, object_id);
     vec3 sum = s.emission * (1.0 - v.coat);
     const bool spread = kModel != kModelMirror || kBlinnPhong;  // a perfect mirror shows no point lights (SH-37)
-    if (kPunctualLights && spread) sum += punctual_light(v, position);
+    if (kPunctualLights && spread) sum += punctual_light(v, position, gathered);
     if (kEmitters && spread) sum += emitter_light(v, position, object_id);
+    if (kGatheredLight && gathered.found) return sum + gathered.light;
     if (kEnvironment != kEnvironmentNone || kTransmission) sum += surroundings(v, position, gl_FragCoord.xy);
     return sum;
 }

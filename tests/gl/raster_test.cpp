@@ -149,6 +149,24 @@ TEST_F(GlRaster, every_setting_is_what_vulkan_draws)
     expect_same("wide points and lines", pose(wires, small), wide);
 }
 
+TEST_F(GlRaster, rays_are_refused_by_name)
+{
+    const Scene scene = make_builtin("lights");
+    const PosedScene posed = pose(scene, {.size = ivec2(8)});
+    RenderSettings shadows, ambient;
+    shadows.shadows = Shadows::ray;
+    ambient.ambient_rays = 1;
+    for (const RenderSettings& settings : {shadows, ambient}) {
+        try {
+            draw(opengl_, posed, settings);
+            ADD_FAILURE() << "drawn";
+        } catch (const Error& error) {
+            EXPECT_EQ(error.blame(), Blame::machine);
+            EXPECT_THAT(error.what(), HasSubstr("Vulkan"));
+        }
+    }
+}
+
 TEST_F(GlRaster, post_passes_make_of_a_film_what_they_make_by_vulkan)
 {
     const Scene scene = make_builtin("spheres");
