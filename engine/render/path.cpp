@@ -28,14 +28,16 @@ double seconds_since(std::chrono::steady_clock::time_point start)
 }  // namespace
 
 PathTracer::State::State(gpu::Device& d, const PosedScene& posed, const Requirements& required,
-                         const RenderSettings& settings, const Progress& progress, Traversal traversal)
+                         const RenderSettings& settings, const Progress& progress, Traversal traversal, PixelSet pixels)
     : device(&d),
       wants_aovs(settings.aovs),
       shard(settings.shard),
       scene(make_path_scene(d, posed, required, settings, progress)),
-      kernels(make_path_kernels(d, scene, traversal == Traversal::exact)),
       frame(d, {.size = sizeof(shared::PathFrame), .name = "path frame"})
 {
+    scene.features.chosen_pixels = pixels == PixelSet::chosen;
+    kernels = make_path_kernels(d, scene, traversal);
+    compile_ahead(d, kernels, settings.threads);
     scene.frame.max_depth = std::min(scene.frame.max_depth, kMostDepth);
     queues = make_path_queues(d, kWaveCapacity, scene.frame.max_depth,
                               scene.features.volume || scene.features.glass_shadows);
@@ -62,31 +64,54 @@ void PathTracer::State::resize(const View& view)
                                  .name = "AOVs"});
     for (std::uint32_t row = from; row < end; row += rows) {
         const std::uint32_t count = std::min(rows, end - row) * w;
-        bands.push_back(make_path_band(*device, scene, frame, kernels, queues, row * w, count,
-                                       std::max(count, kWaveCapacity), aovs));
+        bands.push_back(make_path_band(*device, scene, row * w, count, std::max(count, kPassSlots)));
     }
 }
 
-void PathTracer::State::launch(Commands& commands, PathBand& at, const gpu::ComputePipeline& kernel,
-                               const PathPush& push, std::uint32_t groups)
+/// Bands of a list of pixels.
+void PathTracer::State::choose(std::span<const std::uint32_t> pixels)
 {
-    commands.bind(kernel, at.bindings[push.iteration % 2].at(&kernel));
+    assume(scene.features.chosen_pixels && !pixels.empty());
+    width = static_cast<std::uint32_t>(pixels.size());
+    height = 1;
+    first_row = 0;
+    bands.clear();
+    aovs = gpu::Buffer(
+        *device, {.size = wants_aovs ? 64 * std::min<std::uint64_t>(pixels.size(), kBandPixels) : 0, .name = "AOVs"});
+    for (std::uint32_t first = 0; first < width; first += kBandPixels) {
+        const std::uint32_t count = std::min(kBandPixels, width - first);
+        bands.push_back(make_path_band(*device, scene, first, count, std::max(count, kPassSlots)));
+        gpu::upload(*device, bands.back().pixels.buffer, pixels.subspan(first, count));
+    }
+}
+
+const gpu::Bindings& PathTracer::State::bindings(PathBand& at, PathKernel& kernel, std::size_t from)
+{
+    const auto known = at.bindings[from].find(&kernel);
+    if (known != at.bindings[from].end()) return known->second;
+    const std::vector<gpu::Bind> binds = path_binds(scene, frame, queues, at, aovs, from);
+    return at.bindings[from].emplace(&kernel, gpu::Bindings(*device, kernel.on(*device).layout(), binds)).first->second;
+}
+
+void PathTracer::State::launch(Commands& commands, PathBand& at, PathKernel& kernel, const PathPush& push,
+                               std::uint32_t groups)
+{
+    commands.bind(kernel.on(*device), bindings(at, kernel, push.iteration % 2));
     commands.push(push);
     commands.dispatch(groups);
 }
 
-void PathTracer::State::launch_indirect(Commands& commands, PathBand& at, const gpu::ComputePipeline& kernel,
-                                        const PathPush& push, std::uint32_t row)
+void PathTracer::State::launch_indirect(Commands& commands, PathBand& at, PathKernel& kernel, const PathPush& push,
+                                        std::uint32_t row)
 {
-    commands.bind(kernel, at.bindings[push.iteration % 2].at(&kernel));
+    commands.bind(kernel.on(*device), bindings(at, kernel, push.iteration % 2));
     commands.push(push);
     commands.dispatch_indirect(queues.dispatches, 12 * std::uint64_t{row});
 }
 
 /// One trace kernel over a queue (`row`: with indirect workgroup counts), and the exact one over what it leaves.
-void PathTracer::State::trace(Commands& commands, PathBand& at, const gpu::ComputePipeline& kernel,
-                              const gpu::ComputePipeline& retry, const PathPush& push, std::uint32_t retry_row,
-                              std::optional<std::uint32_t> row)
+void PathTracer::State::trace(Commands& commands, PathBand& at, PathKernel& kernel, PathKernel& retry,
+                              const PathPush& push, std::uint32_t retry_row, std::optional<std::uint32_t> row)
 {
     if (row) {
         launch_indirect(commands, at, kernel, push, *row);
@@ -102,7 +127,7 @@ void PathTracer::State::trace(Commands& commands, PathBand& at, const gpu::Compu
 }
 
 /// Camera rays of a wave into queue 0.
-void PathTracer::State::trace_from_camera(Commands& commands, PathBand& at, const PathPush& push)
+void PathTracer::State::trace_from_camera(Commands& commands, PathBand& at, PathKernel& generate, const PathPush& push)
 {
     commands.fill(queues.counters, 0);
     commands.barrier(Work::copy, Work::copy);
@@ -110,8 +135,7 @@ void PathTracer::State::trace_from_camera(Commands& commands, PathBand& at, cons
     PathPush first = push;
     first.iteration = 1;  // writes what iteration 0 reads
     commands.begin_region("generate");
-    launch(commands, at, kernels.generate, first,
-           (push.slot_count + shared::kPathWorkgroup - 1) / shared::kPathWorkgroup);
+    launch(commands, at, generate, first, (push.slot_count + shared::kPathWorkgroup - 1) / shared::kPathWorkgroup);
     commands.end_region();
     commands.barrier(Work::all, Work::compute);
 }
@@ -165,16 +189,37 @@ void PathTracer::State::finish(Commands& commands)
 void PathTracer::State::begin_pass(std::uint64_t most_samples)
 {
     if (in_block == kBlockSamples) {
-        read_block(total.sum, total.nonfinite, total.truncated);
+        read_block(total);
         first_of_block += in_block;
         in_block = 0;
     }
     const std::uint64_t left = most_samples - first_of_block - in_block;
-    const std::uint32_t fits = bands.size() == 1 ? std::max(1u, kWaveCapacity / 2 / bands[0].pixel_count) : 1u;
+    // Long passes are cheaper, but a stop loses the one at hand: it is never more than a quarter of what is done, where
+    // that is more than a wave.
+    std::uint64_t fits = 1;
+    if (bands.size() == 1) {
+        const std::uint32_t pixels = bands[0].pixel_count;
+        fits = std::max<std::uint64_t>(std::min<std::uint64_t>(kPassSlots / pixels, (first_of_block + in_block) / 4),
+                                       std::max(1u, kWaveCapacity / 2 / pixels));
+    }
     in_pass = static_cast<std::uint32_t>(std::min<std::uint64_t>({left, fits, kBlockSamples - in_block}));
     band = 0;
     next_slot = 0;
     slots_done = 0;
+}
+
+/// Follows the paths of a wave to their ends by the kernel that does all of it; how many of them it has left, and to
+/// whom, is said by kCountLeftOver and the list of retries.
+std::uint32_t PathTracer::State::run_fused(PathBand& at, const PathPush& push)
+{
+    Commands commands(*device, "paths");
+    commands.fill(queues.counters, 0);
+    commands.barrier(Work::copy, Work::compute);
+    commands.begin_region("paths");
+    launch(commands, at, kernels.fused, push, trace_groups(push.slot_count));
+    commands.end_region();
+    finish(commands);
+    return gpu::read_back<std::uint32_t>(*device, queues.counters, 1, 4 * std::uint64_t{shared::kCountLeftOver})[0];
 }
 
 /// Follows the next `count` paths of the pass to their ends.
@@ -188,11 +233,17 @@ void PathTracer::State::run_wave(PathBand& at, std::uint32_t count)
                   .sample_count = in_pass,
                   .iteration = 0,
                   .done = in_block};
+    PathKernel* generate = &kernels.generate;
+    if (kernels.fuses) {
+        push.slot_count = run_fused(at, push);
+        if (push.slot_count == 0) return;
+        generate = &kernels.generate_left;
+    }
     const std::uint32_t depth = scene.frame.max_depth;
     for (std::uint32_t begin = 0; begin < depth; begin += kSegmentsPerSubmit) {
         const std::uint32_t end = std::min(depth, begin + kSegmentsPerSubmit);
         Commands commands(*device, "path wave");
-        if (begin == 0) trace_from_camera(commands, at, push);
+        if (begin == 0) trace_from_camera(commands, at, *generate, push);
         for (push.iteration = begin; push.iteration < end; ++push.iteration) bounce(commands, at, push);
         finish(commands);
         if (end == depth) break;
@@ -221,10 +272,10 @@ void PathTracer::State::end_pass()
 }
 
 PathTracer::PathTracer(gpu::Device& device, const PosedScene& posed, const Requirements& required,
-                       const RenderSettings& settings, const Progress& progress, Traversal traversal)
-    : state_(std::make_unique<State>(device, posed, required, settings, progress, traversal))
+                       const RenderSettings& settings, const Progress& progress, Traversal traversal, PixelSet pixels)
+    : state_(std::make_unique<State>(device, posed, required, settings, progress, traversal, pixels))
 {
-    start(posed.view);
+    if (pixels == PixelSet::all) start(posed.view);
 }
 
 PathTracer::PathTracer(PathTracer&&) noexcept = default;
@@ -239,11 +290,24 @@ void PathTracer::start(const View& view, std::uint64_t seed)
 
 void PathTracer::start(const View& view)
 {
-    State& s = *state_;
-    s.resize(view);
-    set_view(s.scene.frame, view, s.scene.origin);
-    gpu::upload(*s.device, s.frame, std::as_bytes(std::span(&s.scene.frame, 1)));
-    resume({.sum = {view.width, static_cast<int>(s.height)}});
+    assume(!state_->scene.features.chosen_pixels);
+    state_->resize(view);
+    state_->look_through(view);
+    resume(state_->nothing());
+}
+
+void PathTracer::start(const View& view, std::uint64_t seed, std::span<const std::uint32_t> pixels)
+{
+    state_->scene.frame.seed = path_seed(seed);
+    state_->choose(pixels);
+    state_->look_through(view);
+    resume(state_->nothing());
+}
+
+void PathTracer::State::look_through(const View& view)
+{
+    set_view(scene.frame, view, scene.origin);
+    gpu::upload(*device, frame, std::as_bytes(std::span(&scene.frame, 1)));
 }
 
 PathSamples PathTracer::kept() const
@@ -254,7 +318,7 @@ PathSamples PathTracer::kept() const
 void PathTracer::resume(const PathSamples& kept)
 {
     state_->total = kept;
-    state_->first_of_block = kept.sum.samples();
+    state_->first_of_block = kept.samples();
     state_->in_block = state_->in_pass = 0;
     state_->unreached.clear();
 }

@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,14 +22,25 @@ struct KernelTime {
 
 /// What a path tracer has measured and read from the device: whole blocks of 256 samples a pixel.
 struct PathSamples {
-    FilmSum sum;
+    std::vector<FilmSum> sums;  ///< of each replicate (MC-10); one where samples are independent
     std::uint64_t nonfinite = 0;
     std::uint64_t truncated = 0;
+
+    std::uint64_t samples() const
+    {
+        std::uint64_t all = 0;
+        for (const FilmSum& sum : sums) all += sum.samples();
+        return all;
+    }
 };
 
-/// Which kernels find what rays meet: the ones that suit the device, or everywhere those of GPUs, one ray an invocation
-/// with a stack in memory. The picture is the same to the bit.
-enum class Traversal { by_device, exact };
+/// Which kernels follow the paths; the picture is the same to the bit. By the device and the scene: software devices
+/// get whole paths in one kernel, or (large scenes) queues with persistent lanes and a stack in registers; GPUs queues
+/// with one ray an invocation and a stack in memory. Tests ask for the queues, or for those of GPUs, everywhere.
+enum class Traversal { by_device, queues, exact };
+
+/// Of what its pictures are: of all pixels of a view (or of a shard's rows), or of lists of them.
+enum class PixelSet { all, chosen };
 
 /// The path tracer's state on a device: docs/shading.md §3 as a wavefront (docs/architecture.md). The scene is
 /// flattened, its BVH built and everything `required` uploaded once; pictures of any view follow. `posed` (with its
@@ -39,7 +51,7 @@ class PathTracer {
     /// Throws Error(machine) when the device lacks memory, Error(input) when `required` lacks a material's model.
     PathTracer(gpu::Device& device, const PosedScene& posed, const Requirements& required,
                const RenderSettings& settings, const Progress& progress = {},
-               Traversal traversal = Traversal::by_device);
+               Traversal traversal = Traversal::by_device, PixelSet pixels = PixelSet::all);
     PathTracer(PathTracer&&) noexcept;
     PathTracer& operator=(PathTracer&&) noexcept;
     ~PathTracer();
@@ -48,6 +60,9 @@ class PathTracer {
     void start(const View& view);
     /// The same with other random numbers than those of the settings.
     void start(const View& view, std::uint64_t seed);
+    /// The same of `pixels` of the view alone (y * width + x), where the tracer was made for PixelSet::chosen: a film
+    /// of one row, whose pixels are to the bit those of the whole picture.
+    void start(const View& view, std::uint64_t seed, std::span<const std::uint32_t> pixels);
     /// Does a bounded piece of the current pass, about 50 ms of device time; a pass is one sample in every pixel, or
     /// more of small pictures, but not beyond `most_samples` in all. True when it completed the pass.
     bool step(std::uint64_t most_samples);
@@ -76,6 +91,7 @@ class PathTracer {
     const std::vector<KernelTime>& kernel_times() const;
 
  private:
+    friend class PathGather;  // follows paths that begin elsewhere by the same kernels
     struct State;
     std::unique_ptr<State> state_;
 };

@@ -28,7 +28,12 @@ PathFeatures path_features(const PosedScene& posed, const Requirements& required
         if (posed.primitive(draw).topology == Topology::triangles)
             check_model(posed, required, posed.primitive(draw).material);
     for (const PosedSphere& sphere : posed.spheres) check_model(posed, required, sphere.material);
+    return path_features_unchecked(posed, required, settings);
+}
 
+PathFeatures path_features_unchecked(const PosedScene& posed, const Requirements& required,
+                                     const RenderSettings& settings)
+{
     const auto has = [&](Feature feature) { return required.has(feature); };
     PathFeatures out;
     out.triangles = has(Feature::triangles);
@@ -122,7 +127,8 @@ std::vector<gpu::Constant> path_constants(const PathFeatures& f)
             {kSpecOrthographic, f.orthographic},
             {kSpecEquirectangular, f.equirectangular},
             {kSpecSobol, f.sobol},
-            {kSpecGlassShadows, f.glass_shadows}};
+            {kSpecGlassShadows, f.glass_shadows},
+            {kSpecChosenPixels, f.chosen_pixels}};
 }
 
 }  // namespace etalon

@@ -3,6 +3,7 @@
 
 #include "engine/gpu/shader.h"
 #include "engine/scene/requirements.h"
+#include "shaders/shared/sobol.h"
 
 namespace etalon {
 
@@ -22,6 +23,7 @@ struct PathFeatures {
     bool emission = false, punctual = false, sky = false, sky_map = false;
     bool thin_lens = false, orthographic = false, equirectangular = false;
     bool sobol = false, glass_shadows = false;  ///< of the settings
+    bool chosen_pixels = false;                 ///< pictures are of lists of pixels
 
     bool textures() const
     {
@@ -31,10 +33,16 @@ struct PathFeatures {
     bool albedo() const { return metallic_roughness || specular_glossiness; }
     /// Texels of a primitive in the attribute buffer.
     std::size_t attribute_stride() const { return 3u * (std::size_t(normals) + uv + tangents + colors); }
+    /// Independent parts of a pixel's samples (MC-10).
+    std::uint32_t replicates() const { return sobol ? shared::kSobolReplicates : 1; }
 };
 
 /// Throws Error(input) when `required` lacks the model of a material that something visible uses.
 PathFeatures path_features(const PosedScene& posed, const Requirements& required, const RenderSettings& settings);
+
+/// The same whether or not the models are among the requirements: what shaders would be, not what may be drawn.
+PathFeatures path_features_unchecked(const PosedScene& posed, const Requirements& required,
+                                     const RenderSettings& settings);
 
 /// As specialization constants of shaders/path/features.glsl.
 std::vector<gpu::Constant> path_constants(const PathFeatures& features);

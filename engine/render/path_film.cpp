@@ -2,6 +2,7 @@
 #include <cstring>
 
 #include "engine/base/error.h"
+#include "engine/image/replicates.h"
 #include "engine/render/path_state.h"
 
 namespace etalon {
@@ -19,6 +20,10 @@ void PathTracer::State::mark_unreached()
         const std::uint32_t rows = at.pixel_count / width;
         const std::uint32_t first = at.first_pixel - first_row * width;
         for (std::uint32_t k = b == band ? next_slot : 0; k < at.pixel_count; ++k) {
+            if (scene.features.chosen_pixels) {  // in the order of their list
+                unreached[first + k] = true;
+                continue;
+            }
             const std::uint32_t strip = k / (8 * width);
             const std::uint32_t within = k - strip * 8 * width;
             const std::uint32_t tall = std::min(8u, rows - strip * 8);
@@ -27,32 +32,47 @@ void PathTracer::State::mark_unreached()
     }
 }
 
-/// Adds the block on the device to `sum`; samples that were not finite to `lost`, paths cut by the depth limit to
-/// `cut`.
-void PathTracer::State::read_block(FilmSum& sum, std::uint64_t& lost, std::uint64_t& cut) const
+/// A film of no samples.
+PathSamples PathTracer::State::nothing() const
+{
+    return {.sums = std::vector<FilmSum>(scene.features.replicates(), FilmSum(int(width), int(height)))};
+}
+
+/// Adds the block on the device, with its samples that were not finite and the paths cut by the depth limit.
+void PathTracer::State::read_block(PathSamples& samples) const
 {
     const std::size_t pixels = std::size_t{width} * height;
-    std::vector<float> mean(3 * pixels), m2(3 * pixels), alpha(pixels);
+    const std::size_t replicates = samples.sums.size();
+    std::vector<std::vector<vec4>> means, deviations;
     for (const PathBand& at : bands) {
-        const std::vector<vec4> means = gpu::read_back<vec4>(*device, at.mean, at.pixel_count);
-        const std::vector<vec4> deviations = gpu::read_back<vec4>(*device, at.m2, at.pixel_count);
-        for (std::size_t i = 0; i < at.pixel_count; ++i) {
-            const std::size_t pixel = at.first_pixel - first_row * width + i;
-            if (!unreached.empty() && unreached[pixel]) continue;
-            const std::uint32_t counts = std::bit_cast<std::uint32_t>(deviations[i].w);
-            const std::uint32_t bad = counts & 0xffffu;
-            lost += bad;
-            cut += counts >> 16;
-            // A pixel that lost samples stands for as many as the others, with the spread of those it has (M13).
-            const double scale = bad < in_block ? double(in_block) / (in_block - bad) : 0;
-            for (std::size_t c = 0; c < 3; ++c) {
-                mean[3 * pixel + c] = means[i][int(c)];
-                m2[3 * pixel + c] = static_cast<float>(deviations[i][int(c)] * scale);
-            }
-            alpha[pixel] = means[i].w;
-        }
+        means.push_back(gpu::read_back<vec4>(*device, at.mean, replicates * at.pixel_count));
+        deviations.push_back(gpu::read_back<vec4>(*device, at.m2, replicates * at.pixel_count));
     }
-    sum.add_block(mean, m2, alpha, in_block);
+    std::vector<float> mean(3 * pixels), m2(3 * pixels), alpha(pixels);
+    for (std::size_t r = 0; r < replicates; ++r) {
+        const std::uint64_t taken = samples_of_replicate(in_block, r, replicates);
+        for (std::size_t b = 0; b < bands.size(); ++b) {
+            const PathBand& at = bands[b];
+            for (std::size_t i = 0; i < at.pixel_count; ++i) {
+                const std::size_t pixel = at.first_pixel - first_row * width + i;
+                if (!unreached.empty() && unreached[pixel]) continue;
+                const vec4& from = means[b][r * at.pixel_count + i];
+                const vec4& scatter = deviations[b][r * at.pixel_count + i];
+                const std::uint32_t counts = std::bit_cast<std::uint32_t>(scatter.w);
+                const std::uint32_t bad = counts & 0xffffu;
+                samples.nonfinite += bad;
+                samples.truncated += counts >> 16;
+                // A pixel that lost samples stands for as many as the others, with the spread of those it has (M13).
+                const double scale = bad < taken ? double(taken) / double(taken - bad) : 0;
+                for (std::size_t c = 0; c < 3; ++c) {
+                    mean[3 * pixel + c] = from[int(c)];
+                    m2[3 * pixel + c] = static_cast<float>(scatter[int(c)] * scale);
+                }
+                alpha[pixel] = from.w;
+            }
+        }
+        samples.sums[r].add_block(mean, m2, alpha, taken);
+    }
 }
 
 void PathTracer::State::read_aovs(Film& film)
@@ -112,13 +132,17 @@ FilmState PathTracer::State::save() const
                   .samples = first_of_block + in_block,
                   .nonfinite = total.nonfinite,
                   .truncated = total.truncated,
-                  .sums = total.sum.state(),
+                  .sums = {},
                   .block_samples = in_block,
                   .block = {}};
+    for (const FilmSum& sum : total.sums) {
+        const std::vector<double> numbers = sum.state();
+        out.sums.insert(out.sums.end(), numbers.begin(), numbers.end());
+    }
     if (in_block == 0) return out;
     for (const PathBand& at : bands)
         for (const gpu::Buffer* values : {&at.mean, &at.m2}) {
-            const std::vector<float> floats = gpu::read_back<float>(*device, *values, 4 * std::size_t{at.pixel_count});
+            const std::vector<float> floats = gpu::read_back<float>(*device, *values, floats_of(at));
             out.block.insert(out.block.end(), floats.begin(), floats.end());
         }
     return out;
@@ -126,11 +150,18 @@ FilmState PathTracer::State::save() const
 
 void PathTracer::State::restore(const FilmState& state)
 {
-    const std::size_t pixels = std::size_t{width} * height;
+    std::size_t floats = 0;
+    for (const PathBand& at : bands) floats += 2 * floats_of(at);
+    PathSamples blank = nothing();
+    const std::size_t replicates = blank.sums.size(), each = state.sums.size() / replicates;
     if (state.width != int(width) || state.height != int(height) || state.block_samples > state.samples ||
-        state.block_samples > kBlockSamples || state.block.size() != (state.block_samples > 0 ? 8 * pixels : 0))
+        state.block_samples > kBlockSamples || state.block.size() != (state.block_samples > 0 ? floats : 0) ||
+        state.sums.size() % replicates != 0)
         throw Error(Blame::input, "this picture cannot go on from the state of another one");
-    total.sum.restore(state.sums, state.samples - state.block_samples);
+    for (std::size_t r = 0; r < replicates; ++r)
+        blank.sums[r].restore(std::span(state.sums).subspan(r * each, each),
+                              samples_of_replicate(state.samples - state.block_samples, r, replicates));
+    total = std::move(blank);
     total.nonfinite = state.nonfinite;
     total.truncated = state.truncated;
     first_of_block = state.samples - state.block_samples;
@@ -139,8 +170,8 @@ void PathTracer::State::restore(const FilmState& state)
     for (const PathBand& at : bands)
         for (const gpu::Buffer* values : {&at.mean, &at.m2}) {
             if (rest.empty()) return;
-            gpu::upload(*device, *values, rest.first(4 * std::size_t{at.pixel_count}));
-            rest = rest.subspan(4 * std::size_t{at.pixel_count});
+            gpu::upload(*device, *values, rest.first(floats_of(at)));
+            rest = rest.subspan(floats_of(at));
         }
 }
 
@@ -148,8 +179,8 @@ Film PathTracer::film()
 {
     State& s = *state_;
     PathSamples all = s.total;
-    if (s.in_block > 0) s.read_block(all.sum, all.nonfinite, all.truncated);
-    Film film = all.sum.film();
+    if (s.in_block > 0) s.read_block(all);
+    Film film = film_of(all.sums);
     film.nonfinite = all.nonfinite;
     film.truncated = all.truncated;
     if (s.wants_aovs) s.read_aovs(film);
@@ -166,7 +197,7 @@ FilmState PathTracer::state() const
 void PathTracer::resume(const FilmState& state)
 {
     State& s = *state_;
-    resume({.sum = {int(s.width), int(s.height)}});
+    resume(s.nothing());
     s.restore(state);
 }
 

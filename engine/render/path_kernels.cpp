@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "engine/base/error.h"
+#include "engine/base/parallel.h"
 #include "etalon_shaders.h"
 
 namespace etalon {
@@ -25,20 +26,6 @@ Constants operator+(Constants a, const Constants& b)
     return a;
 }
 
-class Compiler {
- public:
-    Compiler(gpu::Device& device, Constants common) : device_(device), common_(std::move(common)) {}
-    gpu::ComputePipeline operator()(std::string_view path, const Constants& more = {}) const
-    {
-        return gpu::ComputePipeline(
-            device_, {.shader = {etalon_shaders::find(path), common_ + more}, .name = std::string(path)});
-    }
-
- private:
-    gpu::Device& device_;
-    Constants common_;
-};
-
 bool persistent(const gpu::Device& device)
 {
     const std::uint32_t size = device.limits().subgroup_size;
@@ -47,20 +34,31 @@ bool persistent(const gpu::Device& device)
 
 }  // namespace
 
-PathKernels make_path_kernels(gpu::Device& device, const PathScene& scene, bool exact)
+const gpu::ComputePipeline& PathKernel::on(gpu::Device& device)
+{
+    if (!pipeline_)
+        pipeline_.emplace(device,
+                          gpu::ComputePipelineSpec{.shader = {etalon_shaders::find(path_), constants_}, .name = path_});
+    return *pipeline_;
+}
+
+PathKernels make_path_kernels(const gpu::Device& device, const PathScene& scene, Traversal traversal)
 {
     using namespace shared;
     PathKernels out;
-    const bool persists = persistent(device) && !exact;
+    const bool persists = persistent(device) && traversal != Traversal::exact;
     // Each visit of a node or primitive is a step, and a lane's rays visit each at most once.
     const bool few_steps = (scene.nodes + scene.primitives) * kRaysPerLane < kSurelyFewSteps;
     out.retries = persists && (scene.stack_need > kMostRegisterStack || !few_steps);
     out.rays_per_lane = persists ? kRaysPerLane : 1;
+    out.fuses = persists && traversal == Traversal::by_device && scene.stack_need <= kMostRegisterStack &&
+                !scene.features.alpha && !scene.features.glass_shadows;
 
     const auto lanes_log2 = static_cast<std::uint32_t>(std::bit_width(device.limits().subgroup_size) - 1);
-    const Compiler compile(device, path_constants(scene.features) + Constants{{kSpecSubgroupLog2, lanes_log2},
-                                                                              {kSpecRaysPerLane, out.rays_per_lane},
-                                                                              {kSpecLightTree, scene.light_tree}});
+    const Constants common = path_constants(scene.features) + Constants{{kSpecSubgroupLog2, lanes_log2},
+                                                                        {kSpecRaysPerLane, out.rays_per_lane},
+                                                                        {kSpecLightTree, scene.light_tree}};
+    const auto kernel = [&](const char* path, const Constants& more = {}) { return PathKernel(path, common + more); };
     const std::int32_t in_registers = std::clamp((scene.stack_need + 3) / 4 * 4, 4, kMostRegisterStack);
     const std::int32_t in_memory = std::max(scene.stack_need + 4, 64);
     // In small scenes rays take about as many steps each, so lanes wait for one another and load their rays together;
@@ -74,22 +72,27 @@ PathKernels make_path_kernels(gpu::Device& device, const PathScene& scene, bool 
     const Constants shadows{{kSpecShadow, true}};
     const Constants centres{{kSpecBlendSolid, true}};
 
-    out.generate = compile("path/generate.comp");
-    out.generate_centres = compile("path/generate.comp", centres);
-    out.trace_paths = compile(trace, stack);
-    out.trace_shadows = compile(trace, stack + shadows);
-    out.trace_centres = compile(trace, stack + centres);
+    out.generate = kernel("path/generate.comp");
+    out.generate_centres = kernel("path/generate.comp", centres);
+    if (out.fuses) {
+        // Fewer lanes than this are not worth a turn of shading while others can take new paths (measured on lavapipe).
+        out.fused = kernel("path/fused.comp", stack + Constants{{kSpecTurn, lanes / 2 + lanes / 4}});
+        out.generate_left = kernel("path/generate.comp", {{kSpecRetry, true}});
+    }
+    out.trace_paths = kernel(trace, stack);
+    out.trace_shadows = kernel(trace, stack + shadows);
+    out.trace_centres = kernel(trace, stack + centres);
     if (out.retries) {
         const Constants again{{kSpecStack, in_memory}, {kSpecRetry, true}};
-        out.retry_paths = compile("path/trace_exact.comp", again);
-        out.retry_shadows = compile("path/trace_exact.comp", again + shadows);
-        out.retry_centres = compile("path/trace_exact.comp", again + centres);
-        out.plan_retries = compile("path/plan.comp", {{kSpecRetry, true}});
+        out.retry_paths = kernel("path/trace_exact.comp", again);
+        out.retry_shadows = kernel("path/trace_exact.comp", again + shadows);
+        out.retry_centres = kernel("path/trace_exact.comp", again + centres);
+        out.plan_retries = kernel("path/plan.comp", {{kSpecRetry, true}});
     }
-    out.shade = compile("path/shade.comp");
-    out.plan = compile("path/plan.comp");
-    out.accumulate = compile("path/accumulate.comp");
-    out.aovs = compile("path/aov.comp");
+    out.shade = kernel("path/shade.comp");
+    out.plan = kernel("path/plan.comp");
+    out.accumulate = kernel("path/accumulate.comp");
+    out.aovs = kernel("path/aov.comp");
     return out;
 }
 
@@ -116,54 +119,65 @@ PathQueues make_path_queues(gpu::Device& device, std::uint32_t capacity, std::ui
     return out;
 }
 
-PathBand make_path_band(gpu::Device& device, const PathScene& scene, const gpu::Buffer& frame,
-                        const PathKernels& kernels, const PathQueues& queues, std::uint32_t first_pixel,
-                        std::uint32_t pixel_count, std::uint32_t slots, const gpu::Buffer& aovs)
+void compile_ahead(gpu::Device& device, PathKernels& kernels, unsigned threads)
 {
-    using namespace shared;
+    std::vector<PathKernel*> all{&kernels.fused, &kernels.accumulate};
+    if (!kernels.fuses)
+        all = {&kernels.shade,    &kernels.trace_paths, &kernels.trace_shadows,
+               &kernels.generate, &kernels.plan,        &kernels.accumulate};
+    parallel_for(
+        all.size(), [&](std::size_t i) { all[i]->on(device); }, threads);
+}
+
+PathBand make_path_band(gpu::Device& device, const PathScene& scene, std::uint32_t first_pixel,
+                        std::uint32_t pixel_count, std::uint32_t slots)
+{
     PathBand out;
     out.first_pixel = first_pixel;
     out.pixel_count = pixel_count;
     out.radiance.buffer = gpu::Buffer(device, {.size = 16 * std::uint64_t{slots}, .name = "radiance"});
     out.radiance.view = gpu::TexelView(device, out.radiance.buffer, VK_FORMAT_R32G32B32A32_UINT);
-    out.mean = gpu::Buffer(device, {.size = 16 * std::uint64_t{pixel_count}, .name = "film mean"});
-    out.m2 = gpu::Buffer(device, {.size = 16 * std::uint64_t{pixel_count}, .name = "film deviations"});
-    for (std::size_t from = 0; from < 2; ++from) {
-        const std::vector<gpu::Bind> binds{{kBindFrame, frame},
-                                           {kBindNodes, scene.node_list.view},
-                                           {kBindPrimitives, scene.primitive_list.view},
-                                           {kBindAttributes, scene.attributes.view},
-                                           {kBindMaterials, scene.materials.view},
-                                           {kBindTextures, scene.textures.view},
-                                           {kBindTexels8, scene.texels_8.view},
-                                           {kBindTexelsWide, scene.texels_wide.view},
-                                           {kBindLights, scene.lights.view},
-                                           {kBindEmitters, scene.emitters.view},
-                                           {kBindSkyCells, scene.sky_cells.view},
-                                           {kBindSkyMap, scene.sky_map.view},
-                                           {kBindPathsIn, queues.paths[from].view},
-                                           {kBindHits, queues.hits.view},
-                                           {kBindShadows, queues.shadows.view},
-                                           {kBindRadianceIn, out.radiance.view},
-                                           {kBindPathsOut, queues.paths[1 - from].buffer},
-                                           {kBindHitsOut, queues.hits.buffer},
-                                           {kBindShadowsOut, queues.shadows.buffer},
-                                           {kBindRadiance, out.radiance.buffer},
-                                           {kBindCounters, queues.counters},
-                                           {kBindDispatches, queues.dispatches},
-                                           {kBindRetries, queues.retries},
-                                           {kBindMean, out.mean},
-                                           {kBindM2, out.m2},
-                                           {kBindAovs, aovs},
-                                           {kBindAlbedo, scene.albedo.view}};
-        for (const gpu::ComputePipeline* kernel :
-             {&kernels.generate, &kernels.generate_centres, &kernels.trace_paths, &kernels.trace_shadows,
-              &kernels.trace_centres, &kernels.retry_paths, &kernels.retry_shadows, &kernels.retry_centres,
-              &kernels.shade, &kernels.plan, &kernels.plan_retries, &kernels.accumulate, &kernels.aovs})
-            if (kernel->handle() != VK_NULL_HANDLE)
-                out.bindings[from].emplace(kernel, gpu::Bindings(device, kernel->layout(), binds));
-    }
+    const std::uint64_t chosen = scene.features.chosen_pixels ? pixel_count : 1;
+    out.pixels.buffer = gpu::Buffer(device, {.size = 4 * chosen, .name = "chosen pixels"});
+    out.pixels.view = gpu::TexelView(device, out.pixels.buffer, VK_FORMAT_R32_UINT);
+    const std::uint64_t sums = 16 * std::uint64_t{pixel_count} * scene.features.replicates();
+    out.mean = gpu::Buffer(device, {.size = sums, .name = "film mean"});
+    out.m2 = gpu::Buffer(device, {.size = sums, .name = "film deviations"});
     return out;
+}
+
+std::vector<gpu::Bind> path_binds(const PathScene& scene, const gpu::Buffer& frame, const PathQueues& queues,
+                                  const PathBand& band, const gpu::Buffer& aovs, std::size_t from)
+{
+    using namespace shared;
+    return {{kBindFrame, frame},
+            {kBindNodes, scene.node_list.view},
+            {kBindPrimitives, scene.primitive_list.view},
+            {kBindAttributes, scene.attributes.view},
+            {kBindMaterials, scene.materials.view},
+            {kBindTextures, scene.textures.view},
+            {kBindTexels8, scene.texels_8.view},
+            {kBindTexelsWide, scene.texels_wide.view},
+            {kBindLights, scene.lights.view},
+            {kBindEmitters, scene.emitters.view},
+            {kBindSkyCells, scene.sky_cells.view},
+            {kBindSkyMap, scene.sky_map.view},
+            {kBindPathsIn, queues.paths[from].view},
+            {kBindHits, queues.hits.view},
+            {kBindShadows, queues.shadows.view},
+            {kBindRadianceIn, band.radiance.view},
+            {kBindPathsOut, queues.paths[1 - from].buffer},
+            {kBindHitsOut, queues.hits.buffer},
+            {kBindShadowsOut, queues.shadows.buffer},
+            {kBindRadiance, band.radiance.buffer},
+            {kBindCounters, queues.counters},
+            {kBindDispatches, queues.dispatches},
+            {kBindRetries, queues.retries},
+            {kBindMean, band.mean},
+            {kBindM2, band.m2},
+            {kBindAovs, aovs},
+            {kBindAlbedo, scene.albedo.view},
+            {kBindPixels, band.pixels.view}};
 }
 
 }  // namespace etalon

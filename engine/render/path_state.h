@@ -12,6 +12,8 @@ namespace etalon {
 /// Paths in flight at once: more hide the cost of a dispatch (some 20 µs on software devices), fewer stay in its
 /// caches.
 inline constexpr std::uint32_t kWaveCapacity = 1u << 17;
+/// Samples of all pixels that a pass holds at most, of which the film is told at once (8 MiB of them).
+inline constexpr std::uint32_t kPassSlots = 1u << 19;
 /// Of a picture's first wave, before the scene's speed is known: a stop must not wait for long even where it is slow.
 inline constexpr std::uint32_t kFirstWave = 1u << 14;
 /// Samples a pixel that are summed in float before they are merged in double (M1); counts of a block fit 16 bits.
@@ -31,7 +33,7 @@ struct PathTracer::State {
     std::uint32_t first_row = 0;          ///< of the film in the picture
     std::uint32_t wave = kFirstWave;      ///< paths of the next wave, adapted to the scene's speed
 
-    PathSamples total{.sum = {1, 1}};  ///< of completed blocks
+    PathSamples total;                 ///< of completed blocks
     std::uint64_t first_of_block = 0;  ///< sample number
     std::uint32_t in_block = 0;        ///< samples of completed passes of this block
 
@@ -46,23 +48,32 @@ struct PathTracer::State {
     std::vector<KernelTime> times;
 
     State(gpu::Device& device, const PosedScene& posed, const Requirements& required, const RenderSettings& settings,
-          const Progress& progress, Traversal traversal);
+          const Progress& progress, Traversal traversal, PixelSet pixels);
     void resize(const View& view);
+    void choose(std::span<const std::uint32_t> pixels);
+    void look_through(const View& view);
     void begin_pass(std::uint64_t most_samples);
+    std::uint32_t run_fused(PathBand& at, const shared::PathPush& push);
     void run_wave(PathBand& at, std::uint32_t count);
     void end_pass();
     void mark_unreached();
-    void trace_from_camera(gpu::Commands& commands, PathBand& at, const shared::PathPush& push);
+    void trace_from_camera(gpu::Commands& commands, PathBand& at, PathKernel& generate, const shared::PathPush& push);
     void bounce(gpu::Commands& commands, PathBand& at, shared::PathPush push);
-    void launch(gpu::Commands& commands, PathBand& at, const gpu::ComputePipeline& kernel, const shared::PathPush& push,
+    const gpu::Bindings& bindings(PathBand& at, PathKernel& kernel, std::size_t from);
+    void launch(gpu::Commands& commands, PathBand& at, PathKernel& kernel, const shared::PathPush& push,
                 std::uint32_t groups);
-    void launch_indirect(gpu::Commands& commands, PathBand& at, const gpu::ComputePipeline& kernel,
-                         const shared::PathPush& push, std::uint32_t row);
-    void trace(gpu::Commands& commands, PathBand& at, const gpu::ComputePipeline& kernel,
-               const gpu::ComputePipeline& retry, const shared::PathPush& push, std::uint32_t retry_row,
-               std::optional<std::uint32_t> row);
+    void launch_indirect(gpu::Commands& commands, PathBand& at, PathKernel& kernel, const shared::PathPush& push,
+                         std::uint32_t row);
+    void trace(gpu::Commands& commands, PathBand& at, PathKernel& kernel, PathKernel& retry,
+               const shared::PathPush& push, std::uint32_t retry_row, std::optional<std::uint32_t> row);
     void finish(gpu::Commands& commands);
-    void read_block(FilmSum& sum, std::uint64_t& lost, std::uint64_t& cut) const;
+    PathSamples nothing() const;
+    void read_block(PathSamples& samples) const;
+    /// In either of its two buffers of the film.
+    std::size_t floats_of(const PathBand& at) const
+    {
+        return 4 * std::size_t{at.pixel_count} * scene.features.replicates();
+    }
     void read_aovs(Film& film);
     FilmState save() const;
     void restore(const FilmState& state);

@@ -1,6 +1,7 @@
 #pragma once
 #include "engine/base/progress.h"
 #include "engine/gpu/device.h"
+#include "engine/image/adaptive.h"
 #include "engine/image/film.h"
 #include "engine/image/film_state.h"
 #include "engine/scene/pose.h"
@@ -25,5 +26,12 @@ enum class KernelTimes { unknown, measured };
 Film render_path(gpu::Device& device, const PosedScene& posed, const Requirements& required,
                  const RenderSettings& settings, const Progress& progress, const Checkpoints& checkpoints = {},
                  KernelTimes kernels = KernelTimes::unknown);
+
+/// render_path() with settings.spp samples a pixel on average, dealt out by what the first 16 of them say (half of them
+/// where there are fewer than 32): plan_samples() of engine/image/adaptive.h, MC-11. Film::counts says how many each
+/// pixel has. When `progress` says stop, pixels that it had not come to have those of the pilot. Error(input) with a
+/// shard.
+Film render_path_adaptively(gpu::Device& device, const PosedScene& posed, const Requirements& required,
+                            const RenderSettings& settings, AdaptiveGoal goal, const Progress& progress);
 
 }  // namespace etalon

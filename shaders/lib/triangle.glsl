@@ -14,9 +14,9 @@ struct RayFrame {
 RayFrame make_ray_frame(vec3 origin, vec3 direction)
 {
     Frame frame = make_frame(robust_normalize(direction));
-    float largest = max_component(abs(direction));
-    vec3 scaled = direction / largest;
-    return RayFrame(origin, frame.x, frame.y, scaled / (dot(scaled, scaled) * largest));
+    float scale = inverse_scale(largest_of(direction));
+    vec3 scaled = direction * scale;
+    return RayFrame(origin, frame.x, frame.y, scaled * (scale / dot(scaled, scaled)));
 }
 
 struct TriangleHit {
@@ -46,7 +46,8 @@ TriangleHit intersect_triangle(RayFrame ray, vec3 p0, vec3 p1, vec3 p2)
     precise float e1 = cx * ay - cy * ax;
     precise float e2 = ax * by - ay * bx;
     float sum = e0 + e1 + e2;
-    bool inside = min(e0, min(e1, e2)) >= 0.0 || max(e0, max(e1, e2)) <= 0.0;
+    vec3 e = vec3(e0, e1, e2);
+    bool inside = all(greaterThanEqual(e, vec3(0.0))) || all(lessThanEqual(e, vec3(0.0)));
     float scale = 1.0 / sum;
     float t = (e0 * dot(a, ray.along) + e1 * dot(b, ray.along) + e2 * dot(c, ray.along)) * scale;
     return TriangleHit(inside && sum != 0.0, sum < 0.0, t, e1 * scale, e2 * scale);

@@ -33,6 +33,7 @@ layout(constant_id = kSpecOrthographic) const bool kOrthographic = true;
 layout(constant_id = kSpecEquirectangular) const bool kEquirectangular = true;
 layout(constant_id = kSpecSobol) const bool kSobol = false;
 layout(constant_id = kSpecGlassShadows) const bool kGlassShadows = false;
+layout(constant_id = kSpecChosenPixels) const bool kChosenPixels = false;
 layout(constant_id = kSpecSpecularGlossiness) const bool kSpecularGlossiness = true;
 layout(constant_id = kSpecSpecular) const bool kSpecular = true;
 layout(constant_id = kSpecClearcoat) const bool kClearcoat = true;

@@ -8,6 +8,7 @@
 layout(set = 0, binding = kBindPathsIn, rgba32ui) readonly uniform uimageBuffer paths_in;
 layout(set = 0, binding = kBindHits, r32ui) readonly uniform uimageBuffer hits_in;
 layout(set = 0, binding = kBindShadows, rgba32ui) readonly uniform uimageBuffer shadows_in;
+layout(set = 0, binding = kBindPixels, r32ui) readonly uniform uimageBuffer chosen_pixels;
 layout(set = 0, binding = kBindPathsOut, std430) writeonly buffer PathsOut { vec4 paths_out[]; };
 layout(set = 0, binding = kBindHitsOut, std430) writeonly buffer HitsOut { uint hits_out[]; };
 layout(set = 0, binding = kBindShadowsOut, std430) writeonly buffer ShadowsOut { vec4 shadows_out[]; };
@@ -55,17 +56,24 @@ void store_path(uint index, PathState path)
 
 uint counter_at(uint iteration, uint which) { return kCountersPerIteration * iteration + which; }
 
+// a / b, and what is left, for a below 2^31 and quotients below 2^22, where the float one is off by one at most: integer
+// division is a scalar loop on lavapipe.
+uint divide(uint a, uint b, out uint rest)
+{
+    uint guess = uint(float(a) / float(b));
+    int over = int(a) - int(guess * b);
+    uint quotient = over < 0 ? guess - 1u : (over >= int(b) ? guess + 1u : guess);
+    rest = a - quotient * b;
+    return quotient;
+}
+
 // Which pixel of the band, and which sample of the pass, a slot is: slot = sample * pixel_count + pixel.
 void split_slot(uint slot, out uint pixel, out uint sample_in_pass)
 {
-    // A float quotient is off by one at most below 2^24; integer division is a scalar loop on lavapipe.
-    uint guess = uint(float(slot) / float(push.pixel_count));
-    int rest = int(slot) - int(guess * push.pixel_count);
-    sample_in_pass = rest < 0 ? guess - 1u : (rest >= int(push.pixel_count) ? guess + 1u : guess);
-    pixel = slot - sample_in_pass * push.pixel_count;
+    sample_in_pass = divide(slot, push.pixel_count, pixel);
 }
 
-uint picture_pixel(uint pixel) { return push.first_pixel + pixel; }
+uint picture_pixel(uint pixel) { return kChosenPixels ? imageLoad(chosen_pixels, int(pixel)).x : push.first_pixel + pixel; }
 
 // One place in a queue for every invocation that wants one; one atomic a subgroup. All invocations must call it.
 uint append(uint counter, bool wanted)

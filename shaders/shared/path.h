@@ -30,10 +30,11 @@ ETALON_CONSTANT uint kBindRadiance = 19u;
 ETALON_CONSTANT uint kBindCounters = 20u;
 ETALON_CONSTANT uint kBindDispatches = 21u;  // workgroup counts, 3 uints a row
 ETALON_CONSTANT uint kBindRetries = 22u;     // indices of rays for the exact kernel
-ETALON_CONSTANT uint kBindMean = 23u;        // per pixel: mean rgb, alpha
-ETALON_CONSTANT uint kBindM2 = 24u;          // per pixel: sums of squared deviations, (nonfinite | truncated << 16)
+ETALON_CONSTANT uint kBindMean = 23u;        // per pixel, replicate after replicate: mean rgb, alpha
+ETALON_CONSTANT uint kBindM2 = 24u;          // likewise: sums of squared deviations, (nonfinite | truncated << 16)
 ETALON_CONSTANT uint kBindAovs = 25u;        // 4 vec4 a pixel
 ETALON_CONSTANT uint kBindAlbedo = 26u;      // tables of shaders/shared/albedo.h
+ETALON_CONSTANT uint kBindPixels = 30u;      // of a picture of chosen pixels: which of the view's they are, r32ui
 
 // Specialization constants.
 ETALON_CONSTANT uint kSpecTriangles = 0u;
@@ -64,7 +65,7 @@ ETALON_CONSTANT uint kSpecThinLens = 24u;
 ETALON_CONSTANT uint kSpecOrthographic = 25u;
 ETALON_CONSTANT uint kSpecShadow = 26u;      // trace kernels: shadow rays, not path segments
 ETALON_CONSTANT uint kSpecBlendSolid = 27u;  // trace kernels, for AOVs: BLEND counts as a surface
-ETALON_CONSTANT uint kSpecRetry = 28u;       // exact trace kernel: rays named by the retry list, not all of them
+ETALON_CONSTANT uint kSpecRetry = 28u;       // exact trace kernel and generate: what the retry list names, not all
 ETALON_CONSTANT uint kSpecStack = 29u;       // entries of the traversal's stack
 ETALON_CONSTANT uint kSpecRaysPerLane = 30u;
 ETALON_CONSTANT uint kSpecSubgroupLog2 = 31u;
@@ -86,6 +87,9 @@ ETALON_CONSTANT uint kSpecLayerTextures = 45u;
 ETALON_CONSTANT uint kSpecEquirectangular = 46u;
 ETALON_CONSTANT uint kSpecSobol = 47u;         // random numbers of MC-8
 ETALON_CONSTANT uint kSpecGlassShadows = 48u;  // shadow rays pass smooth glass (SH-70)
+ETALON_CONSTANT uint kSpecChosenPixels = 49u;  // pixels are those of kBindPixels, not a band of rows
+
+ETALON_CONSTANT uint kSpecTurn = 50u;  // fused kernel: lanes at surfaces that are worth a turn of shading
 
 ETALON_CONSTANT uint kSpecLightTree = 60u;  // emitters are chosen by a tree, else by an alias table
 
@@ -112,7 +116,8 @@ ETALON_CONSTANT uint kCountPaths = 0u;    // entries of the path queue that this
 ETALON_CONSTANT uint kCountShadows = 1u;  // shadow rays that its shading asked for
 ETALON_CONSTANT uint kCountRetriedPaths = 2u;
 ETALON_CONSTANT uint kCountRetriedShadows = 3u;
-ETALON_CONSTANT uint kCountersPerIteration = 4u;
+ETALON_CONSTANT uint kCountLeftOver = 4u;  // of iteration 0: slots in kBindRetries that the fused kernel has left
+ETALON_CONSTANT uint kCountersPerIteration = 5u;
 
 // Rows of kBindDispatches.
 ETALON_CONSTANT uint kDispatchTracePaths = 0u;

@@ -48,10 +48,11 @@ double estimated(const Film& film)
     return sum;
 }
 
-TEST_F(PathPicture, MC_8_sobol_points_have_the_same_mean_a_steeper_slope_and_an_error_under_the_estimated_one)
+TEST_F(PathPicture, MC_10_sobol_points_have_the_same_mean_a_steeper_slope_and_the_estimated_error)
 {
     // A squared error over 576 pixels is known to some 8% (one standard deviation), a slope over 4 octaves to 0.02;
-    // the limits leave five times that. The truth is far nearer to itself than the pictures are to it.
+    // the limits leave five times that. The truth is far nearer to itself than the pictures are to it. The estimated
+    // error has one degree of freedom a pixel, known to some 8% too: four pictures halve both.
     for (const auto& [name, scene] :
          {std::pair{"ball", ball_under_sky()}, std::pair{"cornell", make_builtin("cornell")}}) {
         const auto film = [&](Sequence sampler, std::uint64_t spp, std::uint64_t seed) {
@@ -75,7 +76,15 @@ TEST_F(PathPicture, MC_8_sobol_points_have_the_same_mean_a_steeper_slope_and_an_
         EXPECT_NEAR(many_pcg / estimated(pcg), 1, 0.3) << name;
         EXPECT_LT(slope, slope_pcg - 0.1) << name;
         EXPECT_LT(many, 0.5 * many_pcg) << name;
-        EXPECT_LT(many, estimated(sobol)) << name;
+        double found = many, said = estimated(sobol);
+        for (const std::uint64_t seed : {2u, 3u, 4u}) {
+            const Film other = film(Sequence::sobol, 128, seed);
+            found += squared_difference(other, truth);
+            said += estimated(other);
+        }
+        said += 4 * estimated(truth);  // its own error is in every difference
+        std::printf("%s: squared error %.3f of the estimated one\n", name, found / said);
+        EXPECT_NEAR(found / said, 1, 0.25) << name;
     }
 }
 

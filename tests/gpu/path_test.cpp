@@ -238,6 +238,60 @@ TEST_F(PathPicture, every_kind_of_traversal_gives_the_same_bits)
     EXPECT_GT(measure(a).mean.x, 0.05);
 }
 
+/// By whole paths in one kernel where the device is one for that, through queues, and as on GPUs.
+void expect_the_same_bits(gpu::Device& device, const Scene& scene, const RenderSettings& how, const char* name)
+{
+    PoseSettings pose_settings;
+    pose_settings.size = ivec2(33, 21);
+    const PosedScene posed = pose(scene, pose_settings);
+    const auto draw = [&](Traversal traversal) {
+        PathTracer tracer(device, posed, require(posed, how), how, {}, traversal);
+        while (tracer.samples() < how.spp) tracer.step(how.spp);
+        return tracer.film();
+    };
+    const Film fitting = draw(Traversal::by_device);
+    EXPECT_GT(measure(fitting).mean.x, 0.001) << name;
+    EXPECT_TRUE(same_film(fitting, draw(Traversal::queues))) << name;
+    EXPECT_TRUE(same_film(fitting, draw(Traversal::exact))) << name;
+}
+
+TEST_F(PathPicture, whole_paths_in_one_kernel_have_the_bits_of_those_through_queues)
+{
+    for (const char* name : {"cornell", "glass", "lights", "instances", "thin-lens"})
+        expect_the_same_bits(device(), make_builtin(name), settings(5), name);
+}
+
+TEST_F(PathPicture, paths_longer_than_a_lane_may_step_are_followed_to_their_ends)
+{
+    // Too many steps for all paths that a lane would take: the rest is left to the queues.
+    SceneBuilder b("mirrors");
+    Material mirror;
+    mirror.model = BsdfModel::mirror;
+    mirror.base_color = dvec4(0.999, 0.999, 0.999, 1);
+    mirror.double_sided = true;
+    b.show("room", make_box(dvec3(0), dvec3(4)), b.material(mirror));
+    Material lamp;
+    lamp.model = BsdfModel::lambert;
+    lamp.base_color = dvec4(0, 0, 0, 1);
+    lamp.emission = dvec3(1);
+    b.sphere("lamp", dvec3(1, 1, 1), 0.05, b.material(lamp));
+    b.camera("eye", 60, dvec3(-1, -0.5, 0.3), dvec3(1, 0.2, 0));
+    RenderSettings how = settings(3);
+    how.max_depth = 300;
+    how.russian_roulette = false;
+    const Scene scene = std::move(b).finish();
+    expect_the_same_bits(device(), scene, how, "mirrors");
+    PoseSettings pose_settings;
+    pose_settings.size = ivec2(33, 21);
+    const PosedScene posed = pose(scene, pose_settings);
+    PathTracer tracer(device(), posed, require(posed, how), how);
+    tracer.measure_kernels(true);
+    while (tracer.samples() < how.spp) tracer.step(how.spp);
+    const auto is_shade = [](const KernelTime& kernel) { return kernel.name == "shade"; };
+    const std::vector<KernelTime>& times = tracer.kernel_times();
+    EXPECT_TRUE(std::any_of(times.begin(), times.end(), is_shade)) << "nothing was left to the queues";
+}
+
 TEST_F(PathPicture, R29_requirements_too_many_change_no_bit)
 {
     for (const char* name : {"cornell", "maps"}) {
