@@ -22,11 +22,12 @@ struct Costs {
 constexpr double kMiB = 1 << 20;
 constexpr Costs kRaster{220 * kMiB, 20, 24, 3.6, 0, 20};
 constexpr Costs kPath{210 * kMiB, 190, 0, 1, 136, 12};
+constexpr Costs kRays{68 * kMiB, 180, 0, 1, 136, 12};  ///< what they add to the rasterizer's
 constexpr Costs kReference{134 * kMiB, 115, 0, 1, 316, 8};
 constexpr Costs kReferenceRaster{134 * kMiB, 39, 0, 1, 468, 16};
 constexpr double kAovs = 200;  ///< bytes a pixel, with the EXR that is made of them
 
-const Costs& costs(Renderer renderer)
+const Costs& costs_without_rays(Renderer renderer)
 {
     switch (renderer) {
         case Renderer::raster:
@@ -39,6 +40,19 @@ const Costs& costs(Renderer renderer)
             break;
     }
     return kReferenceRaster;
+}
+
+Costs costs(const RenderSettings& settings)
+{
+    Costs sum = costs_without_rays(settings.renderer);
+    const bool rays = settings.ambient_rays > 0 || settings.shadows == Shadows::ray;
+    if (settings.renderer != Renderer::raster || !rays) return sum;
+    sum.program += kRays.program;
+    sum.pixel += kRays.pixel;
+    sum.geometry += kRays.geometry;
+    sum.drawn_triangle += kRays.drawn_triangle;
+    sum.texel += kRays.texel;
+    return sum;
 }
 
 /// No prediction is so large that it must not be compared.
@@ -63,7 +77,7 @@ std::uint64_t Footprint::total() const
 
 Footprint predict(ivec2 size, const RenderSettings& settings)
 {
-    const Costs& cost = costs(settings.renderer);
+    const Costs cost = costs(settings);
     const double each = cost.pixel + cost.sample * settings.msaa + (settings.aovs ? kAovs : 0);
     const bool rasterizes = settings.renderer == Renderer::raster || settings.renderer == Renderer::reference_raster;
     const double drawn = rasterizes ? double(settings.ssaa) * settings.ssaa : 1;  // of a pixel
@@ -72,7 +86,7 @@ Footprint predict(ivec2 size, const RenderSettings& settings)
 
 Footprint predict(const PosedScene& posed, const RenderSettings& settings)
 {
-    const Costs& cost = costs(settings.renderer);
+    const Costs cost = costs(settings);
     double bytes = double(posed.draws.size()) * sizeof(Draw);
     for (const Mesh& mesh : posed.scene->meshes)
         for (const Primitive& primitive : mesh.primitives) bytes += cost.geometry * bytes_of(primitive);
