@@ -76,6 +76,7 @@ PathGather::PathGather(gpu::Device& device, const PosedScene& posed, const Rende
     };
     kernels_.points = compile("path/gather_points.comp");
     if (wanted.paths > 0) {
+        kernels_.start = compile("path/gather_start.comp");
         kernels_.light = compile("path/gather_light.comp");
         kernels_.sum_light = compile("path/gather_sum.comp");
     }
@@ -111,41 +112,48 @@ void PathGather::bind()
     const PathScene& scene = state.scene;
     const PathQueues& queues = state.queues;
     for (const PathBand& band : state.bands) {
-        const std::vector<gpu::Bind> binds{{kBindFrame, state.frame},
-                                           {kBindNodes, scene.node_list.view},
-                                           {kBindPrimitives, scene.primitive_list.view},
-                                           {kBindAttributes, scene.attributes.view},
-                                           {kBindMaterials, scene.materials.view},
-                                           {kBindTextures, scene.textures.view},
-                                           {kBindTexels8, scene.texels_8.view},
-                                           {kBindTexelsWide, scene.texels_wide.view},
-                                           {kBindLights, scene.lights.view},
-                                           {kBindEmitters, scene.emitters.view},
-                                           {kBindSkyCells, scene.sky_cells.view},
-                                           {kBindSkyMap, scene.sky_map.view},
-                                           {kBindAlbedo, scene.albedo.view},
-                                           {kBindPixels, band.pixels.view},
-                                           {kBindPathsIn, queues.paths[0].view},
-                                           {kBindPathsOut, queues.paths[1].buffer},
-                                           {kBindHits, queues.hits.view},
-                                           {kBindHitsOut, queues.hits.buffer},
-                                           {kBindShadows, queues.shadows.view},
-                                           {kBindShadowsOut, queues.shadows.buffer},
-                                           {kBindRadianceIn, band.radiance.view},
-                                           {kBindRadiance, band.radiance.buffer},
-                                           {kBindCounters, queues.counters},
-                                           {kBindRetries, queues.retries},
-                                           {kBindPoints, points_.view},
-                                           {kBindPointsOut, points_.buffer},
-                                           {kBindKnown, known_},
-                                           {kBindSums, sums_},
-                                           {kBindGathered, light_},
-                                           {kBindLit, lit_}};
+        std::vector<gpu::Bind> binds{{kBindFrame, state.frame},
+                                     {kBindNodes, scene.node_list.view},
+                                     {kBindPrimitives, scene.primitive_list.view},
+                                     {kBindAttributes, scene.attributes.view},
+                                     {kBindMaterials, scene.materials.view},
+                                     {kBindTextures, scene.textures.view},
+                                     {kBindTexels8, scene.texels_8.view},
+                                     {kBindTexelsWide, scene.texels_wide.view},
+                                     {kBindLights, scene.lights.view},
+                                     {kBindEmitters, scene.emitters.view},
+                                     {kBindSkyCells, scene.sky_cells.view},
+                                     {kBindSkyMap, scene.sky_map.view},
+                                     {kBindAlbedo, scene.albedo.view},
+                                     {kBindPixels, band.pixels.view},
+                                     {kBindPathsIn, queues.paths[0].view},
+                                     {kBindPathsOut, queues.paths[1].buffer},
+                                     {kBindHits, queues.hits.view},
+                                     {kBindHitsOut, queues.hits.buffer},
+                                     {kBindShadows, queues.shadows.view},
+                                     {kBindShadowsOut, queues.shadows.buffer},
+                                     {kBindRadianceIn, band.radiance.view},
+                                     {kBindRadiance, band.radiance.buffer},
+                                     {kBindCounters, queues.counters},
+                                     {kBindRetries, queues.retries},
+                                     {kBindPoints, points_.view},
+                                     {kBindPointsOut, points_.buffer},
+                                     {kBindKnown, known_},
+                                     {kBindSums, sums_},
+                                     {kBindGathered, light_},
+                                     {kBindLit, lit_}};
         Bound& bound = bound_.emplace_back();
+        const auto add = [&](const gpu::ComputePipeline& kernel) {
+            if (kernel.handle() != VK_NULL_HANDLE)
+                bound.emplace(&kernel, gpu::Bindings(device_, kernel.layout(), binds));
+        };
         for (const gpu::ComputePipeline* kernel :
              {&kernels_.points, &kernels_.light, &kernels_.shadow, &kernels_.sum_light, &kernels_.sum_shadow})
-            if (kernel->handle() != VK_NULL_HANDLE)
-                bound.emplace(kernel, gpu::Bindings(device_, kernel->layout(), binds));
+            add(*kernel);
+        // Viewing rays go where the first segment reads them.
+        std::erase_if(binds, [](const gpu::Bind& bind) { return bind.binding == kBindPathsOut; });
+        binds.emplace_back(kBindPathsOut, queues.paths[0].buffer);
+        add(kernels_.start);
     }
 }
 
@@ -187,7 +195,14 @@ void PathGather::add_path(std::size_t band, PathPush push)
     PathBand& at = state.bands[band];
     Commands commands(device_, "gathering");
     commands.fill(state.queues.counters, 0);
+    commands.barrier(Work::copy, Work::copy);
+    commands.fill(state.queues.counters, push.slot_count, 4 * std::uint64_t{shared::kCountPaths}, 4);
     commands.barrier(Work::copy, Work::all);
+    launch(commands, band, kernels_.start, push);
+    commands.barrier(Work::all, Work::compute);
+    state.trace(commands, at, state.kernels.trace_centres, state.kernels.retry_centres, push,
+                shared::kDispatchRetryPaths, std::nullopt);
+    commands.barrier(Work::compute, Work::compute);
     launch(commands, band, kernels_.light, push);
     commands.barrier(Work::all, Work::compute);
     state.launch(commands, at, state.kernels.plan, push, 1);

@@ -36,7 +36,7 @@ class PathGather {
 
  private:
     struct Kernels {
-        gpu::ComputePipeline points, light, shadow, sum_light, sum_shadow;
+        gpu::ComputePipeline points, start, light, shadow, sum_light, sum_shadow;
     };
     using Bound = std::map<const gpu::ComputePipeline*, gpu::Bindings>;
 

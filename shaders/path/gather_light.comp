@@ -1,4 +1,4 @@
-// Starts a path at each surface that a pixel shows, and a shadow ray towards an emitter or the environment (SH-44), and says
+// Starts a path where a viewing ray meets the surface that its pixel shows, and a shadow ray towards an emitter or the environment (SH-44), and says
 // what they would find of an environment that nothing hides: that is looked at more often, as it takes no rays, and is the
 // control variate of gather_sum.comp.
 #version 460
@@ -49,28 +49,33 @@ void main()
 {
     uint index = gl_GlobalInvocationID.x;
     bool here = index < push.slot_count;
-    GatherPoint point = load_point(min(index, push.slot_count - 1u));
-    PathState viewing = PathState(point.origin, kNoPrimitive, point.direction, point.slot, vec3(1.0), -1.0, kNoMedium, 0.0);
-    Shaded shaded = shade(viewing, point.primitive, 0u, here);
+    index = min(index, push.slot_count - 1u);
+    PathState viewing = load_path(index);
+    uint primitive = imageLoad(hits_in, int(index)).x;
+    here = here && primitive != kNoPrimitive && primitive != kLostPrimitive;
+    primitive = here ? primitive : 0u;
+    // Rays that miss the object of the pixel's centre are not asked.
+    here = here && load_primitive(primitive).object == load_primitive(load_point(index).primitive).object;
+    Shaded shaded = shade(viewing, primitive, 0u, here);
 
     float t;
-    Surface s = make_surface(point.primitive, point.origin, point.direction, t);
+    Surface s = make_surface(primitive, viewing.origin, viewing.direction, t);
     ShadowRay shadow = shaded.shadow;
     PathState next = shaded.next;
     next.reach = 0.0;
     vec3 by_path = vec3(0.0);
     vec3 by_looks = vec3(0.0);
     // Where nothing scatters, the path is still the viewing ray.
-    bool scatters = next.direction != point.direction;
+    bool scatters = next.direction != viewing.direction;
     if (kSky && scatters) {
         if (is_open(s, next.direction)) by_path = leave_scene(next, false).light;
         if (shadow.reach == kMaxFloat && !shadow.punctual && is_open(s, shadow.direction)) by_path += shadow.light;
         vec4 base = base_color(s.material, s.uvs, s.color);
         Frame local = shading_frame(s);
-        vec3 wo = to_local(local, -point.direction);
+        vec3 wo = to_local(local, -viewing.direction);
         wo.z = max(wo.z, 1e-7);
-        Bsdf bsdf = make_bsdf(s, base.xyz, local, -point.direction, wo.z);
-        uint id = picture_pixel(point.slot);
+        Bsdf bsdf = make_bsdf(s, base.xyz, local, -viewing.direction, wo.z);
+        uint id = picture_pixel(viewing.slot);
         for (uint i = 0u; i < kLooks; ++i) {
             uint number = kLooks * push.first_sample + i;
             by_looks += look(s, bsdf, local, wo, path_bits(id, number, kFirstDimension), path_bits(id, number, kFirstDimension + 1u));
@@ -84,12 +89,12 @@ void main()
     if (casts) {
         shadows_out[3u * place] = vec4(shadow.origin, uintBitsToFloat(shadow.self));
         shadows_out[3u * place + 1u] = vec4(shadow.direction, shadow.reach);
-        shadows_out[3u * place + 2u] = vec4(shadow.light, uintBitsToFloat(point.slot));
+        shadows_out[3u * place + 2u] = vec4(shadow.light, uintBitsToFloat(viewing.slot));
     }
     place = append(counter_at(1u, kCountPaths), shaded.goes_on);
     if (shaded.goes_on) store_path(place, next);
-    if (!here) return;
-    radiance[point.slot] = vec4(0.0);
-    known[2u * index] = vec4(by_path, 0.0);
+    if (gl_GlobalInvocationID.x >= push.slot_count) return;
+    radiance[viewing.slot] = vec4(0.0);
+    known[2u * index] = vec4(by_path, here ? 1.0 : 0.0);
     known[2u * index + 1u] = vec4(by_looks, 0.0);
 }

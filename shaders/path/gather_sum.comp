@@ -53,8 +53,8 @@ void main()
     vec4 y = sums[3u * index + 1u];
     vec4 looks = sums[3u * index + 2u];
     vec3 by_path = known[2u * index].xyz;
-    // A path that the traversal gave up is left out; w of `looks` counts the others.
-    if (is_finite(found)) {
+    // A path that began elsewhere, or that the traversal gave up, is left out; w of `looks` counts the others.
+    if (is_finite(found) && known[2u * index].w > 0.0) {
         x += vec4(found, weigh(found) * weigh(by_path));
         y += vec4(by_path, weigh(by_path) * weigh(by_path));
         looks += vec4(known[2u * index + 1u].xyz, 1.0);

