@@ -75,13 +75,15 @@ Sums pixel_sums(const Film& a, const Film& b, std::size_t i, int c, double round
     const double y = b.mean[i][c];
     double variance_a = a.variance[i][c];
     const double variance_b = b.variance[i][c];
+    const double rounded = rounding * std::max(std::abs(x), std::abs(y));
     // Where replicates agree by chance, as on an edge that all of them hit as often, the two films tell more of the
     // error than either of them (MC-10).
-    if (variance_a + variance_b == 0 && (a.replicates > 0 || b.replicates > 0)) variance_a = (x - y) * (x - y);
+    if ((a.replicates > 0 || b.replicates > 0) && variance_a + variance_b <= rounded * rounded)
+        variance_a = std::max(variance_a, (x - y) * (x - y));
     return {.difference = x - y,
             .magnitude = 0.5 * (std::abs(x) + std::abs(y)),
             .variance = variance_a + variance_b,
-            .rounding = rounding * std::max(std::abs(x), std::abs(y)),
+            .rounding = rounded,
             .spread = variance_a * variance_a / (a.degrees_of_freedom(i) + 2) +
                       variance_b * variance_b / (b.degrees_of_freedom(i) + 2)};
 }
