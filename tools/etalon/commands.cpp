@@ -52,6 +52,14 @@ Command render_command()
                .help = "Path tracers: as many samples as fit into this time from the start of the program (of each "
                        "further picture from the end of the one before) to the written file; --spp is then the most",
                .heading = "Speed and accuracy"},
+              {.name = "adaptive",
+               .argument = "WHAT",
+               .help = "The Vulkan path tracer: --spp samples a pixel on average, more where the first 16 saw more "
+                       "variance, without bias: to make the picture's error small, or relmse, to which dark parts "
+                       "count as much as bright ones",
+               .standard = "off",
+               .choices = {"off", "error", "relmse"},
+               .heading = "Speed and accuracy"},
               {.name = "error",
                .help = "Measure how far the picture is from the light that really reaches its pixels: 2,048 of them "
                        "at random are path-traced by the reference, in 5 seconds at most; the error is said with its "

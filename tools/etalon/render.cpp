@@ -172,6 +172,16 @@ struct Goals {
 Goals goals(const Arguments& arguments, const RenderSettings& settings)
 {
     Goals out{error_goal(arguments, settings), time_goal(arguments, settings), arguments.has("error")};
+    if (arguments.choice("adaptive") != 0) {
+        if (settings.renderer != Renderer::path)
+            throw Error(Blame::input, "--adaptive deals out the samples of the Vulkan path tracer",
+                        "add --renderer path");
+        // What is dealt out has to be known from the start, and is not what a state or a shard has.
+        for (const char* option : {"max-time", "resume", "shard", "profile"})
+            if (arguments.has(option))
+                throw Error(Blame::input, fmt::format("--adaptive and --{} exclude each other", option),
+                            "leave one of them out");
+    }
     if (out.probe && !settings.shard.whole())
         throw Error(Blame::input, "--error is of a whole picture, not of a shard", "merge the shards first");
     return out;

@@ -23,6 +23,13 @@ bool needs_device(Renderer renderer)
     return renderer == Renderer::raster || renderer == Renderer::path;
 }
 
+std::optional<AdaptiveGoal> adaptive_goal(const Arguments& arguments)
+{
+    if (find_option(arguments.command(), "adaptive") == nullptr || arguments.choice("adaptive") == 0)
+        return std::nullopt;
+    return arguments.choice("adaptive") == 1 ? AdaptiveGoal::error : AdaptiveGoal::relmse;
+}
+
 std::string describe(const dmat4& m)
 {
     std::string text;
@@ -42,14 +49,6 @@ std::vector<StageTime> take_stages(Film& film)
         row = milliseconds ? film.metadata.erase(row) : std::next(row);
     }
     return stages;
-}
-
-/// Is the film's variance more than its error? Samples that know of each other scatter more than their mean errs
-/// (MC-8).
-bool is_bound(const Film& film)
-{
-    const auto settings = film.metadata.find("settings");
-    return settings != film.metadata.end() && settings->second.find(" sampler=sobol") != std::string::npos;
 }
 
 /// Everything needed to make the same film again.
@@ -87,7 +86,8 @@ Renderers::Renderers(const Arguments& arguments)
     : options_(device_options(arguments)),
       may_fall_back_(arguments.choice("backend") == 0 && options_.device.empty()),
       memory_(limits(arguments).memory),
-      profile_(find_option(arguments.command(), "profile") != nullptr && arguments.has("profile"))
+      profile_(find_option(arguments.command(), "profile") != nullptr && arguments.has("profile")),
+      adaptive_(adaptive_goal(arguments))
 {}
 
 gpu::Device& Renderers::device(Renderer renderer)
@@ -125,8 +125,11 @@ Drawn Renderers::draw(const std::string& scene_name, const PosedScene& posed, co
                 film = render_raster(device(settings.renderer), posed, required, settings, progress);
                 break;
             case Renderer::path:
-                film = render_path(device(settings.renderer), posed, required, settings, progress, checkpoints,
-                                   profile_ ? KernelTimes::measured : KernelTimes::unknown);
+                film = adaptive_
+                           ? render_path_adaptively(device(settings.renderer), posed, required, settings, *adaptive_,
+                                                    progress)
+                           : render_path(device(settings.renderer), posed, required, settings, progress, checkpoints,
+                                         profile_ ? KernelTimes::measured : KernelTimes::unknown);
                 break;
             case Renderer::reference:
                 film = reference::render_path(posed, required, settings, progress, checkpoints);
@@ -211,9 +214,8 @@ std::string describe_error(const Film& film, Renderer renderer)
     const std::string bias = film.metadata.contains("degraded") ? ", without the bias of --degrade, not measured" : "";
     if (!error && film.metadata.contains("post")) return "not measured after post passes";
     if (!error) return (traced ? "not known from one sample per pixel" : "not measured") + bias;
-    const char* const at_most = traced && is_bound(film) ? "at most " : "";
-    return fmt::format("{}{:.3g}% (95% interval {:.3g}% to {:.3g}%){}", at_most, error->relative * 100,
-                       error->low * 100, error->high * 100, bias);
+    return fmt::format("{:.3g}% (95% interval {:.3g}% to {:.3g}%){}", error->relative * 100, error->low * 100,
+                       error->high * 100, bias);
 }
 
 }  // namespace etalon::cli

@@ -4,6 +4,7 @@
 
 #include "engine/base/progress.h"
 #include "engine/gpu/device.h"
+#include "engine/image/adaptive.h"
 #include "engine/image/film.h"
 #include "engine/image/film_state.h"
 #include "engine/image/post.h"
@@ -63,12 +64,13 @@ class Renderers {
     bool may_fall_back_;    ///< to OpenGL, for the rasterizer
     std::uint64_t memory_;  ///< bytes that may be needed in all
     bool profile_;          ///< the path tracer's kernels are timed
+    std::optional<AdaptiveGoal> adaptive_;  ///< of --adaptive
     std::optional<gpu::Device> device_;
     std::optional<PreparedScene> prepared_;
 };
 
-/// "1.23% (95% interval 1.10% to 1.36%)", "at most …" with Sobol points; "not measured" of a rasterized film; of a
-/// path-traced one with a single sample a pixel, or of a post-processed one, that this is the reason.
+/// "1.23% (95% interval 1.10% to 1.36%)"; "not measured" of a rasterized film; of a path-traced one with a single
+/// sample a pixel, or of a post-processed one, that this is the reason.
 std::string describe_error(const Film& film, Renderer renderer);
 
 }  // namespace etalon::cli
