@@ -113,18 +113,27 @@ const std::vector<Fault>& faults()
     return kFaults;
 }
 
+/// The device reads the metal's albedo from a table that is exact to 10⁻³ (engine/render/albedo.h): its highlight is
+/// 2·10⁻⁴ off, which Sobol points at these samples show.
+CompareSettings with_table()
+{
+    CompareSettings out = settings();
+    out.rounding = 3e-4;
+    return out;
+}
+
 TEST(PathAgreement, ST4_finds_every_planted_error_of_one_percent)
 {
     gpu::Device device;
     for (const auto& make : {in_the_sun, under_the_sky, by_a_lamp}) {
         const Scene scene = make();
         const Film reference = by_reference(scene, kShot);
-        expect_agreement(scene.name, by_vulkan(device, scene, kShot), reference, 0.01);
+        expect_agreement(scene.name, by_vulkan(device, scene, kShot), reference, 0.01, with_table());
         for (const Fault& fault : faults()) {
             if (fault.scene != make) continue;
             Scene faulty = scene;
             fault.plant(faulty);
-            const Comparison found = compare(by_vulkan(device, faulty, kShot), reference, settings());
+            const Comparison found = compare(by_vulkan(device, faulty, kShot), reference, with_table());
             EXPECT_EQ(found.verdict, Verdict::different) << fault.what;
             std::printf("%s: %s\n", fault.what, found.reasons.empty() ? "not found" : found.reasons.front().c_str());
         }

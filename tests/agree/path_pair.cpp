@@ -40,9 +40,10 @@ CompareSettings settings()
     return {.false_alarm = sidak_level(kFalseAlarm, kComparisons), .rounding = kDeviceRounding};
 }
 
-void expect_agreement(const std::string& what, const Film& vulkan, const Film& reference, double must_find)
+void expect_agreement(const std::string& what, const Film& vulkan, const Film& reference, double must_find,
+                      const CompareSettings& how)
 {
-    const Comparison found = compare(vulkan, reference, settings());
+    const Comparison found = compare(vulkan, reference, how);
     ASSERT_TRUE(found.test.has_value()) << what;
     const StatisticalTest& test = *found.test;
     std::printf("%s: %s; std(z) of tiles %.3f, of pixels %.3f, worst tile z %+.2f, whole %+.3g%% %+.3g%% %+.3g%%\n",

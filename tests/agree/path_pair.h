@@ -29,6 +29,7 @@ CompareSettings settings();
 
 /// Prints what was found, the power, and records both; fails unless indistinguishable and able to find `must_find` of
 /// the whole.
-void expect_agreement(const std::string& what, const Film& vulkan, const Film& reference, double must_find);
+void expect_agreement(const std::string& what, const Film& vulkan, const Film& reference, double must_find,
+                      const CompareSettings& how = settings());
 
 }  // namespace etalon::agree

@@ -51,12 +51,12 @@ TEST(Compare, MC_10_films_of_two_replicates_are_called_different_as_often_as_sta
     std::uint64_t count = 0, against_many = 0;
     double score = 0, tile_score = 0;
     for (unsigned i = 0; i < kTrials; ++i) {
-        const Film a = test::replicated_film(32, 32, 8, 2, 1000 + 2 * i);
-        const StatisticalTest found = welch_test(a, test::replicated_film(32, 32, 8, 2, 1001 + 2 * i), settings);
+        const Film a = test::replicated_film(24, 24, 8, 2, 1000 + 2 * i);
+        const StatisticalTest found = welch_test(a, test::replicated_film(24, 24, 8, 2, 1001 + 2 * i), settings);
         count += found.failed > 0;
         score += found.pixel_z_std / kTrials;
         tile_score += found.tile_z_std / kTrials;
-        against_many += welch_test(a, noisy_film(32, 32, 16, 5001 + i), settings).failed > 0;
+        against_many += welch_test(a, noisy_film(24, 24, 16, 5001 + i), settings).failed > 0;
     }
     for (const std::uint64_t alarms : {count, against_many}) {
         const Interval rate = binomial_interval(alarms, kTrials, 1 - 1e-6);
