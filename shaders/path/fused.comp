@@ -14,7 +14,8 @@
 
 layout(local_size_x = kPathWorkgroup) in;
 
-const uint kMaxSteps = 30000u;
+// Turns of all loops of a lane after which its subgroup gives up: lavapipe ends every loop after 65535 of them.
+const uint kMaxSteps = 50000u;
 
 // How many lanes below this one want a path; `all` of them.
 uint rank_among(bool wanted, out uint all)
@@ -27,6 +28,13 @@ uint rank_among(bool wanted, out uint all)
     }
     all = subgroupShuffle(sum, gl_SubgroupSize - 1u);
     return sum - (wanted ? 1u : 0u);
+}
+
+uint subgroup_max(uint x)
+{
+    uint lane = gl_SubgroupInvocationID;
+    for (uint i = 0u; i < kSubgroupLog2; ++i) x = max(x, subgroupShuffle(x, lane ^ (1u << i)));
+    return x;
 }
 
 void leave_over(uint slot) { retries[atomicAdd(counters[kCountLeftOver], 1u)] = slot; }
@@ -67,7 +75,10 @@ void main()
     uint steps = 0u;
     for (;;) {
         bool turn = state == kMet;
+        light_turns = 0u;
         Shaded shaded = shade(path, hit.primitive, segment, turn);
+        steps += 1u + (kPunctual ? kWeighedLights : 0u);
+        if (kLightTree) steps += 2u * subgroup_max(light_turns);  // twice: two loops, each as long as its longest lane
         if (turn) {
             sum = (segment == 0u ? vec4(0.0) : sum) + shaded.collected;
             slot = path.slot;
@@ -84,6 +95,7 @@ void main()
         }
         int rest;
         do {
+            ++steps;
             uint wanted;
             uint place = pool + rank_among(!busy, wanted);
             bool takes = !busy && place < end;
@@ -103,6 +115,7 @@ void main()
             pool = min(pool + wanted, end);
 
             for (;;) {
+                ++steps;
                 bool starts = state == kCasts || state == kGoes;
                 Ray next = make_ray(origin, direction, self, 0u);
                 if (starts) {
@@ -113,6 +126,7 @@ void main()
                     for (int i = 0; i < kStack; ++i) stack[i] = kDone;
                 }
                 for (;;) {
+                    ++steps;
                     do {
                         node = visit_node(ray, node, hit.t);
                         ++steps;

@@ -44,6 +44,9 @@ float left_chance(vec3 from, uint node, uint left)
     return a + b > 0.0 ? a / (a + b) : -1.0;
 }
 
+// Turns of the loops below, for kernels that count theirs.
+uint light_turns = 0u;
+
 // Levels that one random number decides: each costs it about a bit.
 const uint kLevelsPerNumber = 8u;
 
@@ -56,6 +59,7 @@ uint choose_leaf(vec3 from, uint pick, uint more, out float chance)
     chance = 1.0;
     uint left = left_leaves(0u);
     for (uint level = 1u; left > 0u && chance > 0.0; ++level) {
+        ++light_turns;
         float share = left_chance(from, node, left);
         bool goes_left = u < share;
         chance *= share < 0.0 ? 0.0 : (goes_left ? share : 1.0 - share);
@@ -79,6 +83,7 @@ float leaf_chance(vec3 from, uint leaf)
     float chance = 1.0;
     uint left = left_leaves(0u);
     while (left > 0u && chance > 0.0) {
+        ++light_turns;
         float share = left_chance(from, node, left);
         bool goes_left = leaf < first + left;
         chance *= share < 0.0 ? 0.0 : (goes_left ? share : 1.0 - share);

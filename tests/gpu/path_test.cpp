@@ -257,7 +257,7 @@ void expect_the_same_bits(gpu::Device& device, const Scene& scene, const RenderS
 
 TEST_F(PathPicture, whole_paths_in_one_kernel_have_the_bits_of_those_through_queues)
 {
-    for (const char* name : {"cornell", "glass", "lights", "instances", "thin-lens"})
+    for (const char* name : {"cornell", "glass", "lights", "thin-lens"})
         expect_the_same_bits(device(), make_builtin(name), settings(5), name);
 }
 
