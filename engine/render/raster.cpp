@@ -61,25 +61,6 @@ dvec3 center_of(const PosedScene& posed, const Draw& draw)
     return dvec3(draw.world_from_object * dvec4((dvec3(low) + dvec3(high)) / 2.0, 1));
 }
 
-/// Layers that change nothing come last, for the materials that have none: shaders that look for layers find these.
-std::vector<shared::LayerRecord> with_bare_layers(std::span<const Material> materials)
-{
-    std::vector<shared::LayerRecord> records = pack_layers(materials);
-    Material bare;
-    bare.layers.emplace();
-    records.push_back(pack_layers(std::span(&bare, 1)).front());
-    return records;
-}
-
-std::vector<shared::MaterialRecord> with_layers(std::span<const Material> materials)
-{
-    std::vector<shared::MaterialRecord> records = pack_materials(materials);
-    const auto bare = static_cast<shared::uint>(pack_layers(materials).size());
-    for (shared::MaterialRecord& record : records)
-        if (record.layers == shared::kNoLayers) record.layers = bare;
-    return records;
-}
-
 }  // namespace
 
 RasterScene::RasterScene(gpu::Device& device, const PosedScene& posed, const Requirements& required,
@@ -95,8 +76,8 @@ RasterScene::RasterScene(gpu::Device& device, const PosedScene& posed, const Req
       pipelines_(device, geometry_.streams(), RasterGeometry::attributes()),
       frame_(device, {.size = sizeof(shared::RasterFrame), .memory = gpu::MemoryKind::upload, .name = "frame"}),
       aov_frame_(device, {.size = sizeof(shared::RasterFrame), .memory = gpu::MemoryKind::upload, .name = "AOV frame"}),
-      materials_(gpu::make_buffer(device, with_layers(posed.materials()), "materials")),
-      layers_(gpu::make_buffer(device, with_bare_layers(posed.materials()), "material layers")),
+      materials_(gpu::make_buffer(device, pack_materials(posed.materials()), "materials")),
+      layers_(gpu::make_buffer(device, pack_layers(posed.materials()), "material layers")),
       lights_(device, {.size = posed.lights.size() * sizeof(shared::LightRecord),
                        .memory = gpu::MemoryKind::upload,
                        .name = "lights"}),
@@ -163,7 +144,7 @@ void RasterScene::add_albedo()
         const Material& material = posed_.materials()[item.material];
         const bool own = variants_.has_layers(material);
         any |= own || variants_.is_glossy(material);
-        sheen |= own && required_.has(Feature::sheen);
+        sheen |= own && material.layers && material.layers->sheen_color != dvec3(0);
     }
     const bool reflects = !posed_.environment.is_black();
     const auto make = [&] {

@@ -70,7 +70,6 @@ std::uint32_t environment_kind(const Environment& environment, const Requirement
 RasterVariants::RasterVariants(const PosedScene& posed, const Requirements& required, const RenderSettings& settings)
     : posed_(posed),
       required_(required),
-      uber_(required.bits.all()),
       blinn_phong_(settings.shading == Shading::blinn_phong && required.has(Feature::blinn_phong)),
       shadows_(!posed.lights.empty() && required.has(Feature::punctual_lights) ? settings.shadows : Shadows::none),
       gathered_light_(settings.ambient_rays > 0 && !blinn_phong_),
@@ -97,8 +96,7 @@ RasterVariant RasterVariants::of(const Draw& draw, RasterTarget target) const
     variant.set(RasterConstant::lit, triangles || normals);
     variant.set(RasterConstant::triangles, triangles);
     variant.set(RasterConstant::element, element(primitive.topology));
-    if (!primitive.colors.empty() && required_.has(Feature::vertex_colors))
-        variant.set(RasterConstant::vertex_colors, 1);
+    variant.set(RasterConstant::vertex_colors, !primitive.colors.empty() && required_.has(Feature::vertex_colors));
     if (primitive.tangents.empty() || !required_.has(Feature::tangents)) {
         variant.set(RasterConstant::normal_texture, 0);
         constexpr std::uint32_t kCoatNormal = 1u << static_cast<unsigned>(LayerTexture::clearcoat_normal);
@@ -193,32 +191,6 @@ void RasterVariants::set_material(RasterVariant& variant, const Material& materi
     if (occludes) use_texture(variant, C::occlusion_texture, Feature::occlusion_texture, material.occlusion_texture);
     if (emits) use_texture(variant, C::emissive_texture, Feature::emissive_texture, material.emissive_texture);
     if (material.layers && has_layers(material)) set_layers(variant, *material.layers);
-    if (uber_ && variant.target == RasterTarget::color) set_everything(variant, material);
-}
-
-/// What a pipeline for any scene would do: textures that are absent are white, layers have strength 0. What decides how
-/// a surface is drawn (coverage, order, sides) or which of two formulas is used is no such thing.
-void RasterVariants::set_everything(RasterVariant& variant, const Material& material) const
-{
-    using C = RasterConstant;
-    const bool own =
-        material.model == BsdfModel::metallic_roughness || material.model == BsdfModel::specular_glossiness;
-    for (const C constant : {C::base_color_texture, C::emissive_texture, C::emission, C::texture_transform, C::uv1})
-        variant.set(constant, 1);
-    if (variant.shape == RasterShape::mesh) variant.set(C::vertex_colors, 1);
-    if (environment_ != EnvironmentKind::none && !gathered_light_) variant.set(C::occlusion_texture, 1);
-    variant.set(C::punctual_lights, 1);
-    if (!own) return;
-    variant.set(C::metallic_roughness_texture, 1);
-    if (!has_layers(material)) return;
-    for (const C constant : {C::specular_layer, C::clearcoat, C::sheen, C::iridescence, C::diffuse_transmission})
-        variant.set(constant, 1);
-    constexpr auto kBit = [](LayerTexture texture) { return 1u << static_cast<unsigned>(texture); };
-    using T = LayerTexture;
-    variant.set(C::layer_textures, variant.get(C::layer_textures) | kBit(T::specular) | kBit(T::specular_color) |
-                                       kBit(T::clearcoat) | kBit(T::clearcoat_roughness) | kBit(T::sheen_color) |
-                                       kBit(T::sheen_roughness) | kBit(T::iridescence) | kBit(T::diffuse_transmission) |
-                                       kBit(T::diffuse_transmission_color));
 }
 
 void RasterVariants::set_layers(RasterVariant& variant, const MaterialLayers& m) const

@@ -121,7 +121,6 @@ class RasterVariants {
     void set_frame(RasterVariant& variant) const;
     void set_material(RasterVariant& variant, const Material& material) const;
     void set_layers(RasterVariant& variant, const MaterialLayers& layers) const;
-    void set_everything(RasterVariant& variant, const Material& material) const;
     void set_layer(RasterVariant& variant, RasterConstant constant, Feature feature, const MaterialLayers& layers,
                    std::initializer_list<LayerTexture> textures) const;
     bool uses(RasterVariant& variant, Feature feature, const TextureUse& use) const;
@@ -129,7 +128,6 @@ class RasterVariants {
 
     const PosedScene& posed_;
     const Requirements& required_;
-    bool uber_;  // every requirement is set: all that a surface could have is computed, and comes to nothing
     bool blinn_phong_;
     Shadows shadows_;
     bool gathered_light_;

@@ -170,7 +170,9 @@ class Survey {
         const Material& surface = posed_.materials()[primitive.material];
         const bool lit = surface.model != BsdfModel::unlit;
         if (primitive.has_normals && (lit || settings_.aovs)) set(Feature::normals, who);
-        if (!colors_.at(&primitive).white && reads_base_color(surface)) set(Feature::vertex_colors, who);
+        // A rasterizer's interpolated white is white but for rounding.
+        const bool white = rasterizes_ ? primitive.colors.empty() : colors_.at(&primitive).white;
+        if (!white && reads_base_color(surface)) set(Feature::vertex_colors, who);
         if (!primitive.tangents.empty() && lit && needs_tangents(surface)) set(Feature::tangents, who);
         if (settings_.aovs && !primitive.uv[0].empty()) set(Feature::uv0, who);
         material(primitive.material);

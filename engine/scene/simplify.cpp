@@ -72,7 +72,9 @@ class Simplifier {
         // 1 + strength (texel - 1): a texel of 1 is no occlusion, 0 is no strength.
         double occlusion = m.occlusion_strength;
         fold(m.occlusion_texture, "occlusionTexture", {{0, &occlusion, false}});
-        fold(m.emissive_texture, "emissiveTexture", {{0, &m.emission.x}, {1, &m.emission.y}, {2, &m.emission.z}});
+        // Rasterizers take what lights other surfaces from the factor alone (SH-39).
+        fold(m.emissive_texture, "emissiveTexture",
+             {{0, &m.emission.x, false}, {1, &m.emission.y, false}, {2, &m.emission.z, false}});
     }
 
     void fold_layers(MaterialLayers& m)

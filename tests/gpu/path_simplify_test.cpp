@@ -10,12 +10,16 @@ TEST_F(PathPicture, of_a_simplified_scene_is_the_same_to_the_bit)
     const SimplifiableScene wall = simplifiable_scene();
     PosedScene posed = pose_whole(wall.scene, {.size = ivec2(54, 36)});
     const RenderSettings how = settings(3);
-    const Film whole = render_path(device(), posed, require(posed, how), how, {});
+    Requirements with_all = require(posed, how);
+    for (const Feature feature : {Feature::alpha_mask, Feature::alpha_blend, Feature::vertex_colors})
+        with_all.set(feature, "test");
+    const Film whole = render_path(device(), posed, with_all, how, {});
     EXPECT_EQ(simplify(posed).size(), wall.removable);
     const Requirements required = require(posed, how);
-    EXPECT_FALSE(required.has(Feature::alpha_mask));   // of 1 everywhere
-    EXPECT_FALSE(required.has(Feature::alpha_blend));  // likewise
-    EXPECT_FALSE(required.has(Feature::clearcoat) && required.has(Feature::iridescence));
+    EXPECT_FALSE(required.has(Feature::alpha_mask));     // of 1 everywhere
+    EXPECT_FALSE(required.has(Feature::alpha_blend));    // likewise
+    EXPECT_FALSE(required.has(Feature::vertex_colors));  // white
+    EXPECT_FALSE(required.has(Feature::iridescence));
     EXPECT_TRUE(same_film(whole, render_path(device(), posed, required, how, {})));
 }
 

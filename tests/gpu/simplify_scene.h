@@ -65,6 +65,7 @@ class SimplifiableWall {
         // Some are seen from behind.
         const dvec3 right = i % 4 == 0 ? dvec3(-0.28, 0, 0.05) : dvec3(0.28, 0, 0.05);
         Primitive quad = make_rectangle(at, right, dvec3(0, 0.28, 0.1));
+        quad.colors.assign(4, vec4(1));
         build_.show(what, quad, build_.material(material));
         out_.tiles.emplace_back(what);
         out_.removable += removable;
@@ -89,7 +90,7 @@ class SimplifiableWall {
             m.emission = dvec3(2, 1, 0.5);
             m.emissive_texture = texture({255, 255, 255, 256});
         });
-        tile("black emission", 1, [&](Material& m) {
+        tile("black emission", 0, [&](Material& m) {
             m.emission = dvec3(2, 1, 0.5);
             m.emissive_texture = texture({0, 0, 0, 256});
         });
