@@ -75,15 +75,13 @@ Sums pixel_sums(const Film& a, const Film& b, std::size_t i, int c, double round
     const double y = b.mean[i][c];
     double variance_a = a.variance[i][c];
     const double variance_b = b.variance[i][c];
-    const double rounded = rounding * std::max(std::abs(x), std::abs(y));
-    // Where replicates agree by chance, as on an edge that all of them hit as often, the two films tell more of the
-    // error than either of them (MC-10).
-    if ((a.replicates > 0 || b.replicates > 0) && variance_a + variance_b <= rounded * rounded)
-        variance_a = std::max(variance_a, (x - y) * (x - y));
+    // A pixel's variance from two replicates is often far too small by chance, and 0 on an edge that both hit as often:
+    // then the films tell more of the error than either of them. No pixel alone says more than 3 deviations (MC-10).
+    if (a.replicates > 0 || b.replicates > 0) variance_a = std::max(variance_a, (x - y) * (x - y) / 9 - variance_b);
     return {.difference = x - y,
             .magnitude = 0.5 * (std::abs(x) + std::abs(y)),
             .variance = variance_a + variance_b,
-            .rounding = rounded,
+            .rounding = rounding * std::max(std::abs(x), std::abs(y)),
             .spread = variance_a * variance_a / (a.degrees_of_freedom(i) + 2) +
                       variance_b * variance_b / (b.degrees_of_freedom(i) + 2)};
 }
