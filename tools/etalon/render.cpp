@@ -20,6 +20,7 @@
 #include "tools/etalon/json.h"
 #include "tools/etalon/output.h"
 #include "tools/etalon/progress_display.h"
+#include "tools/etalon/raster_goal.h"
 #include "tools/etalon/renderers.h"
 #include "tools/etalon/scenes.h"
 #include "tools/etalon/settings.h"
@@ -156,7 +157,7 @@ std::optional<ErrorGoal> error_goal(const Arguments& arguments, const RenderSett
 {
     const std::optional<double> error = arguments.number("max-error", 1e-6, 10);
     if (!error) return std::nullopt;
-    if (settings.renderer != Renderer::path && settings.renderer != Renderer::reference)
+    if (settings.renderer == Renderer::reference_raster)
         throw Error(Blame::input, "--max-error needs a renderer whose error falls with its samples",
                     "add --renderer path");
     return ErrorGoal{*error, arguments.has("spp") ? settings.spp : kMostSamples};
@@ -261,7 +262,13 @@ Picture make(const Scene& scene, PoseSettings view, Picture picture, RenderSetti
                                  picture.outputs, develop);
         progress = unlimited.until(picture.time->last_sample());
     }
-    const std::optional<ErrorGoal>& goal = goals.error;
+    std::optional<ErrorGoal> goal = goals.error;
+    if (settings.renderer == Renderer::raster && (goal || picture.time)) {
+        settings = choose_raster_settings(posed, settings, goal ? std::optional(goal->error) : std::nullopt,
+                                          picture.time ? std::optional(picture.time->left()) : std::nullopt, renderers,
+                                          picture.notes);
+        goal.reset();  // it has been met as well as it can be
+    }
     const auto draw = [&](const RenderSettings& how, const Progress& told) {
         Drawn drawn = renderers.draw(picture.scene, posed, how, told);
         picture.stages = std::move(drawn.stages);
