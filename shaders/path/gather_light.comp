@@ -25,6 +25,10 @@ bool is_open(Surface s, vec3 wi)
     return !through;
 }
 
+// A direction before the shading normal and behind the surface, or the other way round: no path follows it, and as rasterizers do
+// not replace normals it sees the environment, or balls under strong normal maps would have dark rims.
+bool is_bent(Surface s, vec3 wi) { return (dot(s.ng, wi) > 0.0) != (dot(s.n, wi) > 0.0); }
+
 // What the environment would send to the viewer from the open side, were nothing in the way: one sample of the BSDF and one of
 // the map, MIS.
 vec3 look(Surface s, Bsdf bsdf, Frame local, vec3 wo, uvec4 of_bsdf, uvec4 of_sky)
@@ -65,11 +69,15 @@ void main()
     next.reach = 0.0;
     vec3 by_path = vec3(0.0);
     vec3 by_looks = vec3(0.0);
+    vec3 found = vec3(0.0);  // without a ray
     // Where nothing scatters, the path is still the viewing ray.
     bool scatters = next.direction != viewing.direction;
     if (kSky && scatters) {
         if (is_open(s, next.direction)) by_path = leave_scene(next, false).light;
-        if (shadow.reach == kMaxFloat && !shadow.punctual && is_open(s, shadow.direction)) by_path += shadow.light;
+        if (!shaded.goes_on && is_bent(s, next.direction)) found = by_path;
+        bool towards_sky = shadow.reach == kMaxFloat && !shadow.punctual && is_open(s, shadow.direction);
+        if (towards_sky) by_path += shadow.light;
+        if (towards_sky && !shaded.casts && is_bent(s, shadow.direction)) found += shadow.light;
         vec4 base = base_color(s.material, s.uvs, s.color);
         Frame local = shading_frame(s);
         vec3 wo = to_local(local, -viewing.direction);
@@ -94,7 +102,7 @@ void main()
     place = append(counter_at(1u, kCountPaths), shaded.goes_on);
     if (shaded.goes_on) store_path(place, next);
     if (gl_GlobalInvocationID.x >= push.slot_count) return;
-    radiance[viewing.slot] = vec4(0.0);
+    radiance[viewing.slot] = vec4(found, 0.0);
     known[2u * index] = vec4(by_path, here ? 1.0 : 0.0);
     known[2u * index + 1u] = vec4(by_looks, 0.0);
 }
