@@ -30,6 +30,18 @@ class Parts(Case):
         self.assertIn("no shard", self.run_etalon("merge", self.path("one.exr"), "-o", self.path("x.exr"), code=2).err)
         self.assertFalse(os.path.exists(self.path("x.exr")))
 
+    def test_samples_are_dealt_out_where_they_are_needed(self):
+        run = self.run_etalon(*SCENE, "--adaptive", "error", "-o", self.path("a.exr"), "--json")
+        self.assertLessEqual(run.json["pictures"][0]["samples"], 40)
+        self.assertGreater(run.json["pictures"][0]["samples"], 30)
+        self.run_etalon(*SCENE, "--adaptive", "error", "-o", self.path("b.exr"))
+        self.assertEqual(self.bytes("a.exr"), self.bytes("b.exr"))
+        self.assertIn(b"samples.count", self.bytes("a.exr")[:4096])
+        for more in (["--shard", "1/2"], ["--resume", self.path("s")], ["--max-time", "9"]):
+            self.assertIn("exclude each other", self.run_etalon(*SCENE, "--adaptive", "relmse", *more, "-o", self.path("x.exr"), code=2).err)
+        raster = ["render", "builtin:cornell", "--adaptive", "error", "-o", self.path("x.exr")]
+        self.assertIn("add --renderer path", self.run_etalon(*raster, code=2).err)
+
     def test_a_film_is_taken_up_again_and_is_the_file_of_one_run(self):
         self.run_etalon(*SCENE, "-o", self.path("one.exr"))
         state = ["--resume", self.path("state")]
