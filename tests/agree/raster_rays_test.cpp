@@ -93,7 +93,7 @@ TEST(RasterRays, SH_44_a_white_wall_gives_light_back)
     gpu::Device device;
     const Scene scene = make_floor_by_wall(0.9);
     const PosedScene posed = floor_by_wall(scene);
-    RenderSettings settings{.spp = 512, .max_depth = 5, .msaa = 1};
+    RenderSettings settings{.spp = 256, .max_depth = 5, .msaa = 1};
     settings.ambient_rays = 128;
     const auto mean = [](const Film& film) {
         dvec3 sum(0);
@@ -145,7 +145,7 @@ TEST(RasterRays, SH_44_whole_pictures_come_near_the_path_tracers)
     for (const Row& row : {Row{"cornell", 0.3}, Row{"clearcoat", 0.06}, Row{"sheen", 0.09}}) {
         const Scene scene = make_builtin(row.name);
         const PosedScene posed = pose(scene, {.size = ivec2(32, 24)});
-        RenderSettings settings{.spp = 256, .msaa = 1, .ssaa = 4};
+        RenderSettings settings{.spp = 128, .msaa = 1, .ssaa = 4};
         const Film paths = render_path(device, posed, require(posed, settings), settings, {});
         const auto distance = [&](const Film& film) {
             double sum = 0, mean = 0;
