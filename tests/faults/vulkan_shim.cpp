@@ -132,8 +132,9 @@ struct Wrapped<VkResult(VKAPI_PTR*)(Arguments...), kCall> {
     static VkResult VKAPI_PTR call(Arguments... arguments)
     {
         if (const auto result = meet(kCall)) return *result;
-        // The layers take a submission for made before they know: a driver's failure there would be their error.
-        inside_call = kCall != call_vkQueueSubmit2;
+        // The layers take a submission for made before they know: a driver's failure there would be their error. And
+        // lavapipe 22.3.6 writes into the pipeline layout that it did not get.
+        inside_call = kCall != call_vkQueueSubmit2 && kCall != call_vkCreatePipelineLayout;
         const VkResult done = real(arguments...);
         inside_call = false;
         if constexpr (kCall == call_vkCreateDevice) {
