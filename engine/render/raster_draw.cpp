@@ -288,7 +288,8 @@ void RasterScene::draw_items(gpu::Commands& commands, const View& view, const Se
 bool RasterScene::is_hidden(const Item& item, const View& view, RasterTarget target) const
 {
     // What lies behind a light's eye may be between the light and the scene; lines and points are wider than their box.
-    if (item.shape != RasterShape::mesh || (target != RasterTarget::color && target != RasterTarget::aovs)) return false;
+    if (item.shape != RasterShape::mesh || (target != RasterTarget::color && target != RasterTarget::aovs))
+        return false;
     const Draw& draw = posed_.draws[item.index];
     if (posed_.primitive(draw).topology != Topology::triangles) return false;
     const RasterGeometry::Range& range = geometry_.range(draw);

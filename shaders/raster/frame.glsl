@@ -17,6 +17,8 @@ layout(set = 0, binding = 7, scalar) readonly buffer AlbedoBlock { vec4 albedo_c
 layout(set = 0, binding = 8) uniform texture2D picture_behind;  // levels of seen.glsl; black but for transmission
 layout(set = 0, binding = 9, scalar) readonly buffer ShadowBlock { RasterShadow shadows[]; };
 layout(set = 0, binding = 10, scalar) readonly buffer ShadowDepthBlock { float shadow_depths[]; };
+layout(set = 0, binding = 11) uniform texture2D gathered_light;  // rgb, metres along the viewing axis (gathered.glsl)
+layout(set = 0, binding = 12) uniform utexture2D gathered_lit;   // a bit for each of 96 lights, object
 
 vec4 albedo_cell(int index) { return albedo_cells[index]; }
 

@@ -3,9 +3,6 @@
 #define ETALON_SHADERS_RASTER_GATHERED_GLSL
 #include "shaders/raster/frame.glsl"
 
-layout(set = 0, binding = 11) uniform texture2D gathered_light;  // rgb, metres along the viewing axis
-layout(set = 0, binding = 12) uniform utexture2D gathered_lit;   // a bit for each of 96 lights, object
-
 struct Gathered {
     vec3 light;
     uvec3 lit;

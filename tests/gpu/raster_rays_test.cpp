@@ -21,7 +21,8 @@ TEST_F(RasterRays, SH_44_SH_45_are_the_same_bits_whatever_was_drawn_before)
 {
     const Scene scene = make_builtin("lights");
     const PosedScene posed = pose(scene, {.size = ivec2(40, 30)});
-    const RenderSettings settings = with_rays(2);
+    RenderSettings settings = with_rays(2);
+    settings.aovs = true;  // other pipelines with the same bindings
     RasterScene raster(device(), posed, require(posed, settings), settings);
     View larger = posed.view;
     larger.width += 23;
