@@ -34,6 +34,7 @@ struct Channel {
     int index;
     double* factor;
     bool may_be_0 = true;  ///< a factor of 0 instead of a texture of 0 changes nothing else
+    bool may_be_1 = true;  ///< no texture instead of a texture of 1 changes nothing else
 };
 
 class Simplifier {
@@ -69,12 +70,9 @@ class Simplifier {
         if (m.model == BsdfModel::metallic_roughness)
             fold(m.metallic_roughness_texture, "pbrMetallicRoughness/metallicRoughnessTexture",
                  {{1, &m.roughness}, {2, &m.metallic}});
-        // 1 + strength (texel - 1): a texel of 1 is no occlusion, 0 is no strength.
-        double occlusion = m.occlusion_strength;
-        fold(m.occlusion_texture, "occlusionTexture", {{0, &occlusion, false}});
-        // Rasterizers take what lights other surfaces from the factor alone (SH-39).
+        // In rasterizers what has a texture of emission does not light other surfaces (SH-39), whatever its texels.
         fold(m.emissive_texture, "emissiveTexture",
-             {{0, &m.emission.x, false}, {1, &m.emission.y, false}, {2, &m.emission.z, false}});
+             {{0, &m.emission.x, true, false}, {1, &m.emission.y, true, false}, {2, &m.emission.z, true, false}});
     }
 
     void fold_layers(MaterialLayers& m)
@@ -85,22 +83,17 @@ class Simplifier {
         fold(m.specular_texture, "extensions/KHR_materials_specular/specularTexture", {{3, &m.specular}});
         fold(m.specular_color_texture, "extensions/KHR_materials_specular/specularColorTexture",
              color(m.specular_color));
-        fold(m.clearcoat_texture, "extensions/KHR_materials_clearcoat/clearcoatTexture", {{0, &m.clearcoat}});
+        // A factor of 0 takes the layer out of the shader, and rasterizers then round in other places; so they do
+        // without textures of occlusion and of what is transmitted.
+        fold(m.clearcoat_texture, "extensions/KHR_materials_clearcoat/clearcoatTexture", {{0, &m.clearcoat, false}});
         fold(m.clearcoat_roughness_texture, "extensions/KHR_materials_clearcoat/clearcoatRoughnessTexture",
              {{1, &m.clearcoat_roughness}});
-        fold(m.sheen_color_texture, "extensions/KHR_materials_sheen/sheenColorTexture", color(m.sheen_color));
+        fold(m.sheen_color_texture, "extensions/KHR_materials_sheen/sheenColorTexture",
+             {{0, &m.sheen_color.x, false}, {1, &m.sheen_color.y, false}, {2, &m.sheen_color.z, false}});
         fold(m.sheen_roughness_texture, "extensions/KHR_materials_sheen/sheenRoughnessTexture",
              {{3, &m.sheen_roughness}});
-        fold(m.iridescence_texture, "extensions/KHR_materials_iridescence/iridescenceTexture", {{0, &m.iridescence}});
-        // Whether these are 0 as factors also says which faces are seen and when they are drawn.
-        fold(m.transmission_texture, "extensions/KHR_materials_transmission/transmissionTexture",
-             {{0, &m.transmission, false}});
-        fold(m.thickness_texture, "extensions/KHR_materials_volume/thicknessTexture", {{1, &m.thickness, false}});
-        fold(m.diffuse_transmission_texture, "extensions/KHR_materials_diffuse_transmission/diffuseTransmissionTexture",
-             {{3, &m.diffuse_transmission, false}});
-        fold(m.diffuse_transmission_color_texture,
-             "extensions/KHR_materials_diffuse_transmission/diffuseTransmissionColorTexture",
-             color(m.diffuse_transmission_color));
+        fold(m.iridescence_texture, "extensions/KHR_materials_iridescence/iridescenceTexture",
+             {{0, &m.iridescence, false}});
     }
 
     void fold(TextureUse& use, std::string_view where, const std::vector<Channel>& channels)
@@ -110,10 +103,13 @@ class Simplifier {
         std::vector<double> values;
         bool any_0 = false, any_1 = false;
         for (const Channel& channel : channels) {
-            const double factor = *channel.factor;
-            const std::optional<double> value = factor == 0 ? std::optional(1.0) : constant(image, channel.index);
-            if (value != 1.0 && !(value == 0.0 && channel.may_be_0)) return;
-            (*value == 0 ? any_0 : any_1) |= factor != 0;
+            if (*channel.factor == 0) {
+                values.push_back(0);
+                continue;
+            }
+            const std::optional<double> value = constant(image, channel.index);
+            if (!(value == 1.0 && channel.may_be_1) && !(value == 0.0 && channel.may_be_0)) return;
+            (*value == 0 ? any_0 : any_1) = true;
             values.push_back(*value);
         }
         for (std::size_t i = 0; i < channels.size(); ++i) *channels[i].factor *= values[i];

@@ -19,7 +19,6 @@ TEST_F(PathPicture, of_a_simplified_scene_is_the_same_to_the_bit)
     EXPECT_FALSE(required.has(Feature::alpha_mask));     // of 1 everywhere
     EXPECT_FALSE(required.has(Feature::alpha_blend));    // likewise
     EXPECT_FALSE(required.has(Feature::vertex_colors));  // white
-    EXPECT_FALSE(required.has(Feature::iridescence));
     EXPECT_TRUE(same_film(whole, render_path(device(), posed, required, how, {})));
 }
 

@@ -86,15 +86,15 @@ class SimplifiableWall {
             m.metallic = m.roughness = 0;
             m.metallic_roughness_texture = texture({256, 256, 256, 256});
         });
-        tile("white emission", 1, [&](Material& m) {
+        tile("white emission", 0, [&](Material& m) {
             m.emission = dvec3(2, 1, 0.5);
             m.emissive_texture = texture({255, 255, 255, 256});
         });
-        tile("black emission", 0, [&](Material& m) {
+        tile("black emission", 1, [&](Material& m) {
             m.emission = dvec3(2, 1, 0.5);
             m.emissive_texture = texture({0, 0, 0, 256});
         });
-        tile("no occlusion", 1, [&](Material& m) { m.occlusion_texture = texture({255, 256, 256, 256}); });
+        tile("no occlusion", 0, [&](Material& m) { m.occlusion_texture = texture({255, 256, 256, 256}); });
         tile("blended by 1", 1, [&](Material& m) {
             m.alpha_mode = AlphaMode::blend;
             m.base_color_texture = texture({255, 255, 0, 255});
@@ -107,7 +107,7 @@ class SimplifiableWall {
                                  const std::function<void(MaterialLayers&)>& change) {
             tile(what, count, [&](Material& m) { change(m.layers.emplace()); });
         };
-        layered("no coat", 1, [&](MaterialLayers& l) {
+        layered("no coat", 0, [&](MaterialLayers& l) {
             l.clearcoat = 1;
             l.clearcoat_texture = texture({0, 256, 256, 256});
         });
@@ -117,7 +117,7 @@ class SimplifiableWall {
             l.clearcoat_texture = texture({255, 256, 256, 256});
             l.clearcoat_roughness_texture = texture({256, 255, 256, 256});
         });
-        layered("no sheen", 1, [&](MaterialLayers& l) {
+        layered("no sheen", 0, [&](MaterialLayers& l) {
             l.sheen_color = dvec3(0.5);
             l.sheen_roughness = 0.5;
             l.sheen_color_texture = texture({0, 0, 0, 256});
@@ -128,7 +128,7 @@ class SimplifiableWall {
             l.sheen_color_texture = texture({255, 255, 255, 256});
             l.sheen_roughness_texture = texture({256, 256, 256, 255});
         });
-        layered("no film", 1, [&](MaterialLayers& l) {
+        layered("no film", 0, [&](MaterialLayers& l) {
             l.iridescence = 1;
             l.iridescence_texture = texture({0, 256, 256, 256});
         });
@@ -137,11 +137,11 @@ class SimplifiableWall {
             l.specular_texture = texture({256, 256, 256, 0});
             l.specular_color_texture = texture({255, 255, 0, 256});
         });
-        layered("transmission", 1, [&](MaterialLayers& l) {
+        layered("transmission", 0, [&](MaterialLayers& l) {
             l.transmission = 0.8;
             l.transmission_texture = texture({255, 256, 256, 256});
         });
-        layered("light through", 2, [&](MaterialLayers& l) {
+        layered("light through", 0, [&](MaterialLayers& l) {
             l.diffuse_transmission = 0.8;
             l.diffuse_transmission_texture = texture({256, 256, 256, 255});
             l.diffuse_transmission_color_texture = texture({255, 255, 0, 256});
