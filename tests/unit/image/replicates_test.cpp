@@ -53,13 +53,12 @@ TEST(Replicates, MC_10_the_mean_and_its_variance_are_unbiased_for_any_number_of_
     constexpr std::uint32_t kPixels = 20000;
     for (const Row& row : kRows)
         for (const std::uint32_t samples : {6u, 17u, 64u}) {
-            double mean = 0, squares = 0, error = 0, difference = 0, difference_squares = 0;
+            double mean = 0, squares = 0, difference = 0, difference_squares = 0;
             for (std::uint32_t pixel = 0; pixel < kPixels; ++pixel) {
                 const Pooled found = estimate(pixel, samples, row.f);
                 const double off = found.mean.x - row.truth;
                 mean += off / kPixels;
                 squares += off * off / kPixels;
-                error += found.variance.x / kPixels;
                 const double d = found.variance.x - off * off;
                 difference += d / kPixels;
                 difference_squares += d * d / kPixels;
