@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "engine/base/error.h"
+#include "engine/image/ahead.h"
 #include "engine/reference/post.h"
 #include "engine/reference/reference.h"
 #include "engine/render/post.h"
@@ -120,6 +121,7 @@ Drawn Renderers::draw(const std::string& scene_name, const PosedScene& posed, co
     Film film;
     try {
         check_memory(predict(posed, settings), memory_);
+        if (!pictures_ahead_.joinable()) pictures_ahead_ = load_pictures_ahead();
         switch (settings.renderer) {
             case Renderer::raster:
                 film = render_raster(device(settings.renderer), posed, required, settings, progress);

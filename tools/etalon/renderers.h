@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <thread>
 
 #include "engine/base/progress.h"
 #include "engine/gpu/device.h"
@@ -67,6 +68,7 @@ class Renderers {
     std::optional<AdaptiveGoal> adaptive_;  ///< of --adaptive
     std::optional<gpu::Device> device_;
     std::optional<PreparedScene> prepared_;
+    std::jthread pictures_ahead_;  ///< what writes them is loaded while the first is drawn
 };
 
 /// "1.23% (95% interval 1.10% to 1.36%)"; "not measured" of a rasterized film; of a path-traced one with a single
