@@ -21,9 +21,9 @@ struct Costs {
 };
 constexpr double kMiB = 1 << 20;
 constexpr Costs kRaster{220 * kMiB, 20, 24, 3.6, 0, 20};
-constexpr Costs kPath{210 * kMiB, 190, 0, 1, 136, 12};
+constexpr Costs kPath{210 * kMiB, 396, 0, 1, 136, 12};
 constexpr Costs kRays{68 * kMiB, 180, 0, 1, 136, 12};  ///< what they add to the rasterizer's
-constexpr Costs kReference{134 * kMiB, 115, 0, 1, 316, 8};
+constexpr Costs kReference{134 * kMiB, 304, 0, 1, 316, 8};
 constexpr Costs kReferenceRaster{134 * kMiB, 39, 0, 1, 468, 16};
 constexpr double kAovs = 200;  ///< bytes a pixel, with the EXR that is made of them
 

@@ -74,8 +74,8 @@ class MemoryIsPredicted(Case):
         whole = self.run_etalon(*arguments, "--degrade").json["pictures"][0]
         self.assertEqual((whole["width"], whole["degraded"]), (640, None))
         self.assertNotIn("bias", whole["error_text"])
-        program = 134 * MIB  # what the libraries take; the picture takes 115 bytes a pixel, a quarter of it fits
-        room = ["--memory", str(program + 115 * 640 * 400 // 3)]
+        program = 134 * MIB  # what the libraries take; the picture takes 304 bytes a pixel, a quarter of it fits
+        room = ["--memory", str(program + 304 * 640 * 400 // 3)]
         self.run_etalon(*arguments, *room, code=3)
         run = self.run_etalon(*arguments, *room, "--degrade")
         less = run.json["pictures"][0]
