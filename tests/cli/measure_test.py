@@ -94,14 +94,14 @@ class ChosenByTheFrontier(Case):
         self.run_etalon("tradeoff", *SCENE, "--renderer", "raster", "--quick", "--budget", "2", "--spp", "4", "-o", self.path("report"), env=env)
         self.assertIn("chosen --renderer raster", self.run_etalon("render", *SCENE, "--max-error", "5", *picture, env=env).err)
         self.assertIn("--renderer path", self.run_etalon("render", *SCENE, "--max-error", "1e-6", *picture, env=env).err)
-        timed = self.run_etalon("render", *SCENE, "--size", "24x16", "--max-time", "60", *picture, env=env)
+        timed = self.run_etalon("render", SCENE[0], "--size", "24x16", "--max-time", "60", *picture, env=env)
         self.assertRegex(timed.err, "expected to take .* s here")
         self.run_etalon("render", *SCENE, "--orbit", "30,20", "--max-error", "5", *picture, code=2, env=env)
 
 
 class Explained(Case):
     def test_costs_are_said_and_specialising_changes_no_pixel(self):
-        run = self.run_etalon("explain", *SCENE, "--renderer", "path", "--spp", "1", "--size", "64x36", "--measure", "--budget", "4", "--json")
+        run = self.run_etalon("explain", *SCENE, "--renderer", "path", "--spp", "1", "--measure", "--budget", "4", "--json")
         costs = run.json["costs"]
         shade = [shader for shader in costs["shaders"] if shader["shader"].startswith("path/shade") or shader["shader"].startswith("path/fused")][0]
         self.assertLess(shade["instructions_specialised"], shade["instructions"] / 2)
