@@ -141,8 +141,8 @@ class Interrupted(Case):
         self.check_interrupted("--renderer", "path", "--spp", "100000000", "--size", "16x16")
 
     def test_the_path_tracer_answers_within_its_first_pass(self):
-        # Thirty-three million pixels take seconds; the mark of progress below comes after a step of 50 ms.
-        process = subprocess.Popen([BINARY, "render", "builtin:cornell", "--renderer", "path", "--spp", "2", "--size", "7680x4320", "--json",
+        # Eight million pixels take seconds; the mark of progress below comes after a step of 50 ms.
+        process = subprocess.Popen([BINARY, "render", "builtin:cornell", "--renderer", "path", "--spp", "2", "--size", "3840x2160", "--json",
                                     "--progress", "json", "-o", self.path("x.exr")], stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
         self.addCleanup(process.kill)
         for line in process.stderr:
@@ -151,11 +151,11 @@ class Interrupted(Case):
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=LIMIT_S)
         self.assertEqual(process.returncode, 130, err)
-        self.assertRegex(err, r"interrupted in the first pass: \d+ of 33177600 pixels have no sample")
+        self.assertRegex(err, r"interrupted in the first pass: \d+ of 8294400 pixels have no sample")
         picture = json.loads(out)["pictures"][0]
         self.assertEqual(picture["samples"], 1)
         self.assertGreater(picture["pixels_without_samples"], 0)
-        self.assertLess(picture["pixels_without_samples"], 33177600)
+        self.assertLess(picture["pixels_without_samples"], 8294400)
 
     def test_a_second_signal_stops_at_once_and_leaves_nothing(self):
         process = self.start("--renderer", "reference", "--spp", "1000000000", "--size", "1024x1024")
