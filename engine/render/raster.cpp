@@ -102,7 +102,13 @@ RasterScene::RasterScene(gpu::Device& device, const PosedScene& posed, const Req
     add_shadows();
     add_rays(progress);
     nothing_behind_ = upload_picture(device, Image(), "nothing behind");
+    bind_frames();
+}
+
+void RasterScene::bind_frames()
+{
     frame_bindings_ = bind_frame(frame_, nothing_behind_);
+    shadow_bindings_.clear();
     for (const gpu::Buffer& frame : shadow_frames_) shadow_bindings_.push_back(bind_frame(frame, nothing_behind_));
     if (settings_.aovs && required_.has(Feature::aovs)) aov_bindings_ = bind_frame(aov_frame_, nothing_behind_);
 }

@@ -79,6 +79,8 @@ class RasterScene {
     void add_albedo();
     using FrameBindings = std::map<RasterShape, gpu::Bindings>;
     FrameBindings bind_frame(const gpu::Buffer& frame, const gpu::Image& behind) const;
+    /// All but those that read what is behind, which come and go with the targets.
+    void bind_frames();
     /// The view with so many pixels as are drawn.
     View drawn(View view) const;
     void resize(const View& view);

@@ -79,7 +79,7 @@ void RasterScene::resize(const View& view)
                                       .aovs = settings_.aovs && required_.has(Feature::aovs),
                                       .levels = behind_.has_value()});
     if (filter_) filter_->bind(targets_);
-    if (rays_ && rays_->resize(fine)) frame_bindings_ = bind_frame(frame_, nothing_behind_);
+    if (rays_ && rays_->resize(fine)) bind_frames();
     if (!behind_) return;
     behind_->bind(targets_);
     behind_bindings_ = bind_frame(frame_, targets_.levels);
