@@ -53,7 +53,7 @@ has measured. A scene is still read whole first, as far as the limits above let 
 | held for | raster | path | reference | reference-raster |
 | --- | --: | --: | --: | --: |
 | libraries, driver and compiler, MiB | 220 | 210 | 134 | 134 |
-| a pixel, bytes | 20 + 24 a sample | 190 | 115 | 39 |
+| a pixel, bytes | 20 + 24 a sample | 396 | 304 | 39 |
 | … with `--aovs` | + 200 | + 200 | + 200 | + 200 |
 | a byte of vertex attributes and indices, bytes | 3.6 | 1 | 1 | 1 |
 | a triangle each time it is shown, bytes | – | 136 | 316 | 468 |

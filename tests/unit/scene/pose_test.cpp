@@ -298,6 +298,7 @@ TEST(PosedEnvironment, is_the_studio_only_where_nothing_shines)
     EXPECT_TRUE(pose(scene, none).environment.is_black());
     scene.materials[0].emission = dvec3(1);
     EXPECT_TRUE(pose(scene).environment.is_black()) << "a lamp";
+    scene.textures.emplace_back();
     scene.materials[0].emissive_texture.texture = 0;
     EXPECT_TRUE(pose(scene).environment.map) << "a glowing part of a model is no lamp";
     scene.roots[0].environment = Environment{};
