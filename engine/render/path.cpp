@@ -135,9 +135,26 @@ void PathTracer::State::trace_from_camera(Commands& commands, PathBand& at, Path
     PathPush first = push;
     first.iteration = 1;  // writes what iteration 0 reads
     commands.begin_region("generate");
-    launch(commands, at, generate, first, (push.slot_count + shared::kPathWorkgroup - 1) / shared::kPathWorkgroup);
+    launch(commands, at, generate, first, groups_for(push.slot_count));
     commands.end_region();
     commands.barrier(Work::all, Work::compute);
+}
+
+/// What the pixels' centres show, into the hits.
+void PathTracer::State::trace_centres(Commands& commands, PathBand& at, const PathPush& push)
+{
+    trace_from_camera(commands, at, kernels.generate_centres, push);
+    trace(commands, at, kernels.trace_centres, kernels.retry_centres, push, shared::kDispatchRetryPaths, std::nullopt);
+    commands.barrier(Work::compute, Work::compute);
+}
+
+/// The rays towards lights that the last plan has counted.
+void PathTracer::State::trace_shadows(Commands& commands, PathBand& at, const PathPush& push)
+{
+    commands.begin_region("trace shadows");
+    trace(commands, at, kernels.trace_shadows, kernels.retry_shadows, push, shared::kDispatchRetryShadows,
+          shared::kDispatchTraceShadows);
+    commands.end_region();
 }
 
 /// One segment of all paths of the wave: what it meets, what light comes from there, and where it goes on.
@@ -153,8 +170,7 @@ void PathTracer::State::bounce(Commands& commands, PathBand& at, PathPush push)
     commands.barrier(Work::compute, Work::compute);
     commands.begin_region("shade");
     if (first) {
-        launch(commands, at, kernels.shade, push,
-               (push.slot_count + shared::kPathWorkgroup - 1) / shared::kPathWorkgroup);
+        launch(commands, at, kernels.shade, push, groups_for(push.slot_count));
     } else {
         launch_indirect(commands, at, kernels.shade, push, shared::kDispatchShade);
     }
@@ -164,10 +180,7 @@ void PathTracer::State::bounce(Commands& commands, PathBand& at, PathPush push)
     launch(commands, at, kernels.plan, push, 1);
     commands.barrier(Work::compute, Work::all);
     if (scene.frame.strategy_count == 0) return;
-    commands.begin_region("trace shadows");
-    trace(commands, at, kernels.trace_shadows, kernels.retry_shadows, push, shared::kDispatchRetryShadows,
-          shared::kDispatchTraceShadows);
-    commands.end_region();
+    trace_shadows(commands, at, push);
 }
 
 void PathTracer::State::finish(Commands& commands)
@@ -262,8 +275,7 @@ void PathTracer::State::end_pass()
         push.first_pixel = at.first_pixel;
         push.sample_count = in_pass;
         push.done = in_block;
-        launch(commands, at, kernels.accumulate, push,
-               (at.pixel_count + shared::kPathWorkgroup - 1) / shared::kPathWorkgroup);
+        launch(commands, at, kernels.accumulate, push, groups_for(at.pixel_count));
     }
     commands.end_region();
     finish(commands);

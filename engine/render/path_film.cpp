@@ -93,19 +93,9 @@ void PathTracer::State::read_aovs(Film& film)
             push.slot_count = std::min(kWaveCapacity, at.pixel_count - slot);
             push.pixel_count = at.pixel_count;
             push.first_pixel = at.first_pixel;
-            PathPush first = push;
-            first.iteration = 1;
-            const std::uint32_t groups = (push.slot_count + shared::kPathWorkgroup - 1) / shared::kPathWorkgroup;
             Commands commands(*device, "path AOVs");
-            commands.fill(queues.counters, 0);
-            commands.barrier(Work::copy, Work::copy);
-            commands.fill(queues.counters, push.slot_count, 4 * std::uint64_t{shared::kCountPaths}, 4);
-            launch(commands, at, kernels.generate_centres, first, groups);
-            commands.barrier(Work::all, Work::compute);
-            trace(commands, at, kernels.trace_centres, kernels.retry_centres, push, shared::kDispatchRetryPaths,
-                  std::nullopt);
-            commands.barrier(Work::compute, Work::compute);
-            launch(commands, at, kernels.aovs, push, groups);
+            trace_centres(commands, at, push);
+            launch(commands, at, kernels.aovs, push, groups_for(push.slot_count));
             finish(commands);
         }
         const std::vector<vec4> values = gpu::read_back<vec4>(*device, aovs, 4 * std::size_t{at.pixel_count});

@@ -46,11 +46,6 @@ gpu::Image make_image(gpu::Device& device, const View& view, VkFormat format, co
              .name = name}};
 }
 
-std::uint32_t groups_for(std::uint32_t count)
-{
-    return (count + shared::kPathWorkgroup - 1) / shared::kPathWorkgroup;
-}
-
 }  // namespace
 
 PathGather::PathGather(gpu::Device& device, const PosedScene& posed, const RenderSettings& settings,
@@ -109,39 +104,14 @@ void PathGather::bind()
 {
     using namespace shared;
     const PathTracer::State& state = *tracer_.state_;
-    const PathScene& scene = state.scene;
-    const PathQueues& queues = state.queues;
     for (const PathBand& band : state.bands) {
-        std::vector<gpu::Bind> binds{{kBindFrame, state.frame},
-                                     {kBindNodes, scene.node_list.view},
-                                     {kBindPrimitives, scene.primitive_list.view},
-                                     {kBindAttributes, scene.attributes.view},
-                                     {kBindMaterials, scene.materials.view},
-                                     {kBindTextures, scene.textures.view},
-                                     {kBindTexels8, scene.texels_8.view},
-                                     {kBindTexelsWide, scene.texels_wide.view},
-                                     {kBindLights, scene.lights.view},
-                                     {kBindEmitters, scene.emitters.view},
-                                     {kBindSkyCells, scene.sky_cells.view},
-                                     {kBindSkyMap, scene.sky_map.view},
-                                     {kBindAlbedo, scene.albedo.view},
-                                     {kBindPixels, band.pixels.view},
-                                     {kBindPathsIn, queues.paths[0].view},
-                                     {kBindPathsOut, queues.paths[1].buffer},
-                                     {kBindHits, queues.hits.view},
-                                     {kBindHitsOut, queues.hits.buffer},
-                                     {kBindShadows, queues.shadows.view},
-                                     {kBindShadowsOut, queues.shadows.buffer},
-                                     {kBindRadianceIn, band.radiance.view},
-                                     {kBindRadiance, band.radiance.buffer},
-                                     {kBindCounters, queues.counters},
-                                     {kBindRetries, queues.retries},
-                                     {kBindPoints, points_.view},
-                                     {kBindPointsOut, points_.buffer},
-                                     {kBindKnown, known_},
-                                     {kBindSums, sums_},
-                                     {kBindGathered, light_},
-                                     {kBindLit, lit_}};
+        std::vector<gpu::Bind> binds = path_binds(state.scene, state.frame, state.queues, band, state.aovs, 0);
+        binds.insert(binds.end(), {{kBindPoints, points_.view},
+                                   {kBindPointsOut, points_.buffer},
+                                   {kBindKnown, known_},
+                                   {kBindSums, sums_},
+                                   {kBindGathered, light_},
+                                   {kBindLit, lit_}});
         Bound& bound = bound_.emplace_back();
         const auto add = [&](const gpu::ComputePipeline& kernel) {
             if (kernel.handle() != VK_NULL_HANDLE)
@@ -152,7 +122,7 @@ void PathGather::bind()
             add(*kernel);
         // Viewing rays go where the first segment reads them.
         std::erase_if(binds, [](const gpu::Bind& bind) { return bind.binding == kBindPathsOut; });
-        binds.emplace_back(kBindPathsOut, queues.paths[0].buffer);
+        binds.emplace_back(kBindPathsOut, state.queues.paths[0].buffer);
         add(kernels_.start);
     }
 }
@@ -169,19 +139,9 @@ void PathGather::launch(Commands& commands, std::size_t band, const gpu::Compute
 std::uint32_t PathGather::find_points(std::size_t band, const PathPush& push)
 {
     PathTracer::State& state = *tracer_.state_;
-    PathPush first = push;
-    first.iteration = 1;  // writes what iteration 0 reads
     Commands commands(device_, "gathering points");
     commands.fill(sums_, 0);
-    commands.fill(state.queues.counters, 0);
-    commands.barrier(Work::copy, Work::copy);
-    commands.fill(state.queues.counters, push.slot_count, 4 * std::uint64_t{shared::kCountPaths}, 4);
-    commands.barrier(Work::copy, Work::all);
-    state.launch(commands, state.bands[band], state.kernels.generate_centres, first, groups_for(push.slot_count));
-    commands.barrier(Work::all, Work::compute);
-    state.trace(commands, state.bands[band], state.kernels.trace_centres, state.kernels.retry_centres, push,
-                shared::kDispatchRetryPaths, std::nullopt);
-    commands.barrier(Work::compute, Work::compute);
+    state.trace_centres(commands, state.bands[band], push);
     launch(commands, band, kernels_.points, push);
     state.finish(commands);
     const std::uint64_t counter = 4 * std::uint64_t{shared::kCountersPerIteration + shared::kCountPoints};
@@ -207,9 +167,7 @@ void PathGather::add_path(std::size_t band, PathPush push)
     commands.barrier(Work::all, Work::compute);
     state.launch(commands, at, state.kernels.plan, push, 1);
     commands.barrier(Work::compute, Work::all);
-    if (state.scene.frame.strategy_count > 0)
-        state.trace(commands, at, state.kernels.trace_shadows, state.kernels.retry_shadows, push,
-                    shared::kDispatchRetryShadows, shared::kDispatchTraceShadows);
+    if (state.scene.frame.strategy_count > 0) state.trace_shadows(commands, at, push);
     for (push.iteration = 1; push.iteration < state.scene.frame.max_depth; ++push.iteration) {
         commands.barrier(Work::compute, Work::all);
         state.bounce(commands, at, push);
@@ -232,8 +190,7 @@ void PathGather::add_shadow(std::size_t band, PathPush push)
     commands.barrier(Work::all, Work::compute);
     state.launch(commands, at, state.kernels.plan, push, 1);
     commands.barrier(Work::compute, Work::all);
-    state.trace(commands, at, state.kernels.trace_shadows, state.kernels.retry_shadows, push,
-                shared::kDispatchRetryShadows, shared::kDispatchTraceShadows);
+    state.trace_shadows(commands, at, push);
     commands.barrier(Work::compute, Work::compute);
     launch(commands, band, kernels_.sum_shadow, push);
     state.finish(commands);

@@ -14,6 +14,12 @@ namespace etalon {
 inline constexpr std::uint32_t kWaveCapacity = 1u << 17;
 /// Samples of all pixels that a pass holds at most, of which the film is told at once (8 MiB of them).
 inline constexpr std::uint32_t kPassSlots = 1u << 19;
+/// Of a kernel with a thread for each of `count`.
+inline std::uint32_t groups_for(std::uint32_t count)
+{
+    return (count + shared::kPathWorkgroup - 1) / shared::kPathWorkgroup;
+}
+
 /// Of a picture's first wave, before the scene's speed is known: a stop must not wait for long even where it is slow.
 inline constexpr std::uint32_t kFirstWave = 1u << 14;
 /// Samples a pixel that are summed in float before they are merged in double (M1); counts of a block fit 16 bits.
@@ -58,6 +64,7 @@ struct PathTracer::State {
     void end_pass();
     void mark_unreached();
     void trace_from_camera(gpu::Commands& commands, PathBand& at, PathKernel& generate, const shared::PathPush& push);
+    void trace_centres(gpu::Commands& commands, PathBand& at, const shared::PathPush& push);
     void bounce(gpu::Commands& commands, PathBand& at, shared::PathPush push);
     const gpu::Bindings& bindings(PathBand& at, PathKernel& kernel, std::size_t from);
     void launch(gpu::Commands& commands, PathBand& at, PathKernel& kernel, const shared::PathPush& push,
@@ -66,6 +73,7 @@ struct PathTracer::State {
                          std::uint32_t row);
     void trace(gpu::Commands& commands, PathBand& at, PathKernel& kernel, PathKernel& retry,
                const shared::PathPush& push, std::uint32_t retry_row, std::optional<std::uint32_t> row);
+    void trace_shadows(gpu::Commands& commands, PathBand& at, const shared::PathPush& push);
     void finish(gpu::Commands& commands);
     PathSamples nothing() const;
     void read_block(PathSamples& samples) const;
